@@ -23,10 +23,10 @@ def check_format(path: str | Path) -> None:
     """
     suffix = Path(path).suffix.lower()
     if suffix != ".msh" and suffix not in meshio.extension_to_filetypes:
-        named = f"'{suffix}' is no format of a mesh" if suffix else "has no suffix to say its format"
+        named = f"'{suffix}' is no format of a mesh" if suffix else "has no suffix that gives its format"
         raise InputError(f"{named}; use .vtu, .msh, .inp or .xdmf", "--write", path)
     if suffix == ".msh" != Path(path).suffix:
-        raise InputError("gmsh knows its format by small letters; give .msh", "--write", path)
+        raise InputError("gmsh accepts lower-case suffixes only; give .msh", "--write", path)
     if suffix in SURFACES:
         raise InputError(f"{suffix} files hold no line elements; use .vtu, .msh, .inp or .xdmf", "--write", path)
 
@@ -35,7 +35,7 @@ def write_mesh(spring: Spring, turns: np.ndarray, path: str | Path) -> None:
     """Write the nodes on the centre line and the elements between them.
 
     If its format can hold data, the file contains the turn and the wire diameter of every node; if it can hold groups,
-    it contains wire, bottom end, top end and end coils (the elements whose middle lies in an end turn).
+    it contains wire, bottom end, top end and end coils (the elements whose middle is in an end turn).
 
     Args:
         spring: `Spring`.
@@ -43,7 +43,7 @@ def write_mesh(spring: Spring, turns: np.ndarray, path: str | Path) -> None:
         path: the file; its suffix determines the format.
 
     Raises:
-        InputError: a suffix that meshio does not know, or a format without line elements.
+        InputError: a suffix unknown to meshio, or a format without line elements.
         OSError: if the file cannot be written.
     """
     path = Path(path)

@@ -29,7 +29,7 @@ class SectionGrid:
         if self.core < 1 or self.rings < 1:
             raise InputError(f"core {self.core} and rings {self.rings} must be at least 1", "grid")
         if not 0 < self.core_size < 1:
-            raise InputError(f"{self.core_size} must lie between 0 and 1", "grid.core_size")
+            raise InputError(f"{self.core_size} must be between 0 and 1", "grid.core_size")
         if not 0 < self.grading < np.inf:
             raise InputError(f"{self.grading} is not possible; give a positive ratio of thicknesses", "grid.grading")
 

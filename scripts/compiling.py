@@ -13,13 +13,14 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from coilset.model.runtime.caches import SOURCES, load_without_compiler
 from coilset.model.runtime.processes import end_with_parent, first_rank
 
-NOTICE = "coilset: compiling forms and kernels, once after an installation or a change; this takes some minutes ..."
+STAGES = ("rod", "creep", "uniform", "point")  # see warm.py; the first run of a spring needs only the first
+NOTICE = "coilset: compiling forms and kernels, once after an installation or a change; this takes a minute or two ..."
 NOTICE_OF_PART = "coilset: compiling what this command needs, once ..."
 COMPILE = [sys.executable, "-m", "coilset.scripts", "compile"]
 OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun tells a process that it is a rank, but for
@@ -68,20 +69,20 @@ def show(line: str) -> None:
         )
 
 
-def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None] = _to_stderr) -> None:
-    """Have another process compile all kernels of this version, if that has not been done; others that need it wait.
-
-    To be called before MPI is started, which would take that process for a rank.
+def compile_first(
+    check: Callable[[], object] = bool, say: Callable[[str], None] = _to_stderr, stages: Sequence[str] = STAGES
+) -> None:
+    """Have another process compile the kernels of some stages, if that has not been done; others that need them wait.
 
     Args:
         check: checks the command's input first, so that errors in it are reported immediately.
         say: prints a line.
+        stages: of STAGES.
 
     Raises:
         InputError: by `check`.
     """
-    done = compiled()
-    if done.exists():
+    if not (missing := _missing(stages)):
         return
     check()
     say(NOTICE)
@@ -90,12 +91,13 @@ def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None]
         name: value for name, value in os.environ.items() if name.startswith(ALLOWED) or not name.startswith(OF_A_RANK)
     }
     with contextlib.suppress(OSError):  # if nothing can be stored, each process compiles for itself
-        done.parent.mkdir(parents=True, exist_ok=True)
-        with open(done.with_suffix(".lock"), "w") as lock:
+        marker = compiled(STAGES[0])
+        marker.parent.mkdir(parents=True, exist_ok=True)
+        with open(marker.with_suffix(".lock"), "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            if not done.exists():
+            if missing := _missing(stages):
                 with subprocess.Popen(
-                    COMPILE,
+                    [*COMPILE, *missing],
                     env=environment,
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.PIPE,
@@ -106,16 +108,22 @@ def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None]
                     assert process.stdout is not None
                     for line in process.stdout:  # its stages
                         show(line.rstrip())
-    if done.exists():
+    if not _missing(stages):
         if sys.stderr.isatty():
             show("")
         say(f"coilset: compiled in {time.monotonic() - begun:.0f} s")
 
 
-def compiled() -> Path:
-    """The file that marks all kernels of this version, checkout and Python as compiled; it lies beside them."""
+def _missing(stages: Sequence[str]) -> list[str]:
+    return [stage for stage in stages if not compiled(stage).exists()]
+
+
+def compiled(stage: str) -> Path:
+    """The file that marks a stage as compiled for this version, checkout and Python; it is beside the kernels."""
     kind = hashlib.sha256(repr((str(SOURCES), sys.version, sys.prefix)).encode())
-    return Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{kind.hexdigest()[:16]}"  # see coilset.model.runtime.caches
+    return (
+        Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{kind.hexdigest()[:16]}-{stage}"
+    )  # see coilset.model.runtime.caches
 
 
 def announce_compiling(say: Callable[[str], None] = _to_stderr, notice: str = NOTICE_OF_PART) -> Announcement:

@@ -1,4 +1,4 @@
-"""What environment.sh asks a Python: its files and folders, a line each, and whether it has what coilset needs.
+"""Answers to environment.sh about a Python: its files and folders, a line each, and whether it has all requirements.
 
 Any Python 3 answers, from its standard input, so that this folder is none of those in which it looks for modules.
 """

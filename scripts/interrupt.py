@@ -3,14 +3,14 @@
 During a solve the step in progress is finished, then the run ends; a second Ctrl-C ends it at once.
 """
 
+import io
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable
 from types import FrameType
-from typing import TYPE_CHECKING, Any
-
-from coilset.scripts.terminal.output import output_closed
+from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:  # the command asks for the numbers below before MPI is started
     from mpi4py import MPI
@@ -18,6 +18,50 @@ if TYPE_CHECKING:  # the command asks for the numbers below before MPI is starte
 INTERRUPTED = 128 + signal.SIGINT  # exit code
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)  # SIGUSR1: how mpirun passes them on, see scripts/ranks.py
 ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
+
+
+class Output:
+    """A text stream that discards output once nobody reads it, instead of raising BrokenPipeError.
+
+    A letter that its encoding lacks, such as the π of a formula in ASCII, becomes a question mark.
+
+    Attributes:
+        closed_by_reader: whether that has happened.
+    """
+
+    def __init__(self, stream: TextIO):
+        self.stream, self.closed_by_reader = stream, False
+        if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+            stream.reconfigure(errors="replace")
+
+    def write(self, text: str) -> int:
+        """Write or discard; returns the number of characters."""
+        try:
+            return self.stream.write(text)
+        except BrokenPipeError:
+            self._drop()
+            return len(text)
+
+    def flush(self) -> None:
+        """Flush or discard."""
+        try:
+            self.stream.flush()
+        except BrokenPipeError:
+            self._drop()
+
+    def _drop(self) -> None:
+        self.closed_by_reader = True
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, self.stream.fileno())  # also for what is still in buffers
+        os.close(nowhere)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.stream, name)
+
+
+def output_closed() -> bool:
+    """Whether the reader of standard output has closed it."""
+    return getattr(sys.stdout, "closed_by_reader", False)
 
 
 class Interrupt:

@@ -2,14 +2,13 @@
 
 import os
 import sys
+from pathlib import Path
 
 from coilset.model.base.errors import InputError
 from coilset.model.runtime.processes import number_of_ranks, usable_cores
-from coilset.scripts.beginning import announce_begin
 from coilset.scripts.commands.material import app as material
-from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
-from coilset.scripts.loading import load_for_solve
-from coilset.scripts.plain import typer
+from coilset.scripts.compiling import NOTICE, STAGES, announce_compiling, compile_first
+from coilset.scripts.startup import announce_begin, load_for_solve, typer
 from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target
 
 HELP = """How far does a coil spring set, and what stress remains in it?
@@ -82,7 +81,7 @@ def solve(
     if not (quiet or json):
         announce_begin(case, out)
     settings = [*settings, f"solver.method={method}"] if method else settings
-    compile_first(lambda: _check_case(case, settings))
+    compile_first(lambda: _check_case(case, settings), stages=("rod",))
     with Drawings(os.environ) as drawings:
         if pictures and os.path.isfile(case):
             drawings.start_if_free()
@@ -193,6 +192,7 @@ def report(
     results: str = typer.Argument(metavar="RESULTS", help="results folder of a run, a design, a nest or a sweep"),
 ) -> None:
     """Write a page of a run, a design, a nest or a sweep; it opens from disk without a network."""
+    compile_first(stages=("point",))
     announce_compiling()
     from coilset.scripts.commands.report import report as write_page
 
@@ -204,9 +204,11 @@ def fields(
     results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
 ) -> None:
     """Write time series of a run for ParaView: centre line, wire as a tube, section points."""
-    from coilset.scripts.commands.show import fields as write_fields
+    from coilset.model.figures.series import write_series
+    from coilset.model.results.files.opened import open_run
 
-    write_fields(results)
+    for path in write_series(open_run(results)):
+        print(path)
 
 
 @app.command()
@@ -214,9 +216,11 @@ def animate(
     results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
 ) -> None:
     """Write an animation of a run: the spring through its load program, coloured by stress."""
-    from coilset.scripts.commands.show import animate as draw
+    from coilset.model.figures.animation import animate as draw
+    from coilset.model.results.files.opened import open_run
 
-    draw(results)
+    path = draw(open_run(results))
+    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
 
 
 @app.command()
@@ -289,26 +293,34 @@ def verify(
 
 @app.command()
 def bench(
-    out: str = typer.Option("results/bench", callback=folder_target, help="folder for record and figure, overwritten"),
-    full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, 15 minutes"),
+    out: str = typer.Option("results/bench", callback=folder_target, help="folder for the record, overwritten"),
+    full: bool = typer.Option(False, "--full", help="up to 100,000 elements: 3 GiB, some minutes"),
     cold: bool = typer.Option(False, "--cold", help="also time compilation from scratch"),
-    against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands of another checkout"),
+    springs: bool = typer.Option(False, "--springs", help="run random springs instead; their costs by family"),
+    count: int = typer.Option(70, min=1, max=100_000, help="number of random springs"),
+    against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands or springs of another checkout"),
 ) -> None:
-    """Measure run time by stage, number of elements and ranks, and cases per hour."""
+    """Measure run time of commands, by stage, by number of elements and on two ranks."""
     compile_first()
-    from coilset.scripts.commands.bench import bench as run_benchmarks
+    from coilset.scripts.commands import bench as benchmarks
 
-    run_benchmarks(out, full, cold, against)
+    if springs:
+        benchmarks.bench_springs(out, count, against)
+    else:
+        benchmarks.bench(out, full, cold, against)
 
 
 @app.command(name="compile")
-def compile_() -> None:
-    """Compile forms and kernels now, which takes some minutes, so that the first run need not wait."""
+def compile_(
+    stages: list[str] = typer.Argument(None, metavar="[STAGE]...", help=f"{', '.join(STAGES)} [default: all]"),
+) -> None:
+    """Compile forms and kernels now, which takes a minute or two, so that the first run need not wait."""
+    if unknown := set(stages or ()).difference(STAGES):
+        raise InputError(f"'{min(unknown)}' is no stage; give {', '.join(STAGES)}", "coilset compile")
     announce_compiling(notice=NOTICE)
     from coilset.scripts.warm import warm
 
-    warm(lambda line: print(line, flush=True))
-    compiled().touch()
+    warm(stages or STAGES, lambda line: print(line, flush=True))
 
 
 @app.command()
@@ -318,12 +330,16 @@ def examples(
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
 ) -> None:
     """List the examples, or copy one as a starting point."""
-    from coilset.scripts.commands import examples as shipped
+    from coilset.model.run import examples as shipped
 
-    if name is None:
-        shipped.show()
-    else:
-        shipped.copy(name, out, force)
+    if name is not None:
+        for path in shipped.copy(shipped.find(name), Path(out), force):
+            print(path)
+        return
+    names = shipped.names()
+    for one in names:
+        print(f"{one:{max(map(len, names)) + 2}}{shipped.title(one)}")
+    print("\ncopy one with: coilset examples NAME")
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

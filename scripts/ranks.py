@@ -52,7 +52,7 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
 
 
 def _run(command: list[str], environment: dict[str, str]) -> int:
-    """Run mpirun, and pass on what it says, and the signals that come; its exit code."""
+    """Run mpirun, pass on its output and incoming signals; returns its exit code."""
     process = subprocess.Popen(
         command,
         stdin=subprocess.DEVNULL,
@@ -147,6 +147,6 @@ class MpirunMessages:
         self.target.flush()
 
     def tell(self) -> None:
-        """Write what was held back."""
+        """Write the lines that were held back."""
         self.target.write(self.kept + self.rest)
         self.flush()

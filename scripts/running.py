@@ -12,11 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from coilset.model.base.errors import CoilsetError, InputError, printable
 from coilset.model.runtime.processes import first_rank
-from coilset.scripts.ending import Ending
-from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL
+from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL, Output, output_closed
 from coilset.scripts.main import app
-from coilset.scripts.plain import typer
-from coilset.scripts.terminal.output import Output, output_closed
+from coilset.scripts.startup import typer
 
 if TYPE_CHECKING:  # commands load what they need
     from mpi4py import MPI
@@ -65,7 +63,7 @@ def run() -> None:
     # PETSc would treat a closed pipe, which Output handles, as a crash.
     os.environ["PETSC_OPTIONS"] = f"{os.environ.get('PETSC_OPTIONS', '')} -no_signal_handler"
     _listen()
-    ending, status = Ending(), 1
+    status = 1
     try:
         _refuse_unreadable(sys.argv[1:])
         status = app(prog_name="coilset", standalone_mode=False) or 0
@@ -81,9 +79,6 @@ def run() -> None:
         _complain(f"{error.filename or 'a file'}: cannot be written: {error.strerror}")
     except typer.Exit as error:
         status = error.exit_code
-    except SystemExit as error:  # of ranks that have reported why
-        ending.status = error.code if isinstance(error.code, int) else 1
-        raise
     except (typer.Abort, KeyboardInterrupt):
         status = INTERRUPTED
     except Exception as error:
@@ -94,7 +89,6 @@ def run() -> None:
         _complain(command_line_message(error))
     if status == INTERRUPTED:  # typer may have converted the exception to an exit code
         status = _interrupted()
-    ending.status = status
     sys.exit(status)
 
 
@@ -164,9 +158,9 @@ def _crash() -> None:
 
 
 def _interrupted() -> int:
-    """An interruption, told in one line; its exit code.
+    """Report an interruption in one line; returns its exit code.
 
-    A rank that waits for another one inside MPI hears of no signal: if it does not come within SOON_TOGETHER, all end.
+    A rank that waits for another one inside MPI receives no signal: if it does not come within SOON_TOGETHER, all end.
     """
     closed = output_closed()  # like any program whose reader has gone
     status = 128 + signal.SIGPIPE if closed else INTERRUPTED
@@ -185,7 +179,7 @@ def _leave_together(exit_code: int, seconds: float, line: str = "") -> None:
     Args:
         exit_code: of ranks that end without the others.
         seconds: that a rank waits for the others.
-        line: that it reports then; empty: it has been told.
+        line: that it reports then; empty: it has been reported.
     """
     if (world := _several_ranks()) is None:
         return

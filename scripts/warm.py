@@ -1,7 +1,7 @@
-"""`coilset compile`: compile in advance what a first run would compile."""
+"""`coilset compile`: compile the kernels of a first run in advance."""
 
-from collections.abc import Callable
-from functools import partial
+import contextlib
+from collections.abc import Callable, Sequence
 
 from mpi4py import MPI
 
@@ -11,6 +11,7 @@ from coilset.model.figures.panels.material_curves import there_and_back
 from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
+from coilset.scripts.compiling import STAGES, compiled
 
 LOADING = "loading=[{to: {travel: 16}, steps: 4}, {to: {force: 0}, steps: 1}]"
 CREEPING = "loading=[{to: {force: 650}, steps: 2}, {hold: {hours: 1}, steps: 1}]"
@@ -18,33 +19,35 @@ PRESSED, HELD = ("ck15_presetting.yaml", LOADING), ("time/relaxation.yaml", CREE
 
 
 def short_case(example: str, loading: str) -> Case:
-    """An example in few elements, and what it goes through."""
+    """An example in few elements with a load program."""
     return read_case(EXAMPLES / example, ("mesh.elements_per_turn=16", loading))
 
 
-def warm(report: Callable[[str], object] = lambda line: None) -> None:
-    """Compress an example until coils touch and yield, release it, let one creep, press a uniform rod; keep nothing.
+def warm(names: Sequence[str] = STAGES, report: Callable[[str], object] = lambda line: None) -> None:
+    """Compile stages, and mark them as compiled.
 
-    One point of steel is twisted, too, as for the page of a run.
-
-    What several threads do is compiled beside what one does: there are points enough for two, on the surface too.
+    `rod`: the example is compressed until coils touch and yield, and released; `creep`: a spring creeps; `uniform`: a
+    uniform rod is pressed, as designs do; `point`: a point of steel is twisted, as for the page of a run. Nothing is
+    kept.
 
     Args:
-        report: called with a line before each stage: what is compiled, and how many stages there are.
+        names: of STAGES.
+        report: called with a line before each stage: the stage and the number of stages.
     """
-    cases = {"a spring that yields": short_case(*PRESSED), "a spring that creeps": short_case(*HELD)}
     law = library.load("ck15")
-    stages: dict[str, Callable[[], object]] = {
-        f"{name}, {threads} thread{'s' * (threads > 1)}": partial(_run, case, threads)
-        for name, case in cases.items()
-        for threads in (1, 2)
+    stages: dict[str, tuple[str, Callable[[], object]]] = {
+        "rod": ("a spring that yields", lambda: _run(short_case(*PRESSED))),
+        "creep": ("a spring that creeps", lambda: _run(short_case(*HELD))),
+        "uniform": ("the uniform rod", lambda: guess(short_case(*PRESSED), [])),
+        "point": ("a point of material", lambda: there_and_back(law, law.reference_temperature)),
     }
-    stages["the uniform rod"] = partial(guess, next(iter(cases.values())), [])
-    stages["a point of material"] = partial(there_and_back, law, law.reference_temperature)
-    for number, (name, stage) in enumerate(stages.items(), 1):
-        report(f"coilset: compiling {number} of {len(stages)}: {name}")
+    for number, name in enumerate(names, 1):
+        words, stage = stages[name]
+        report(f"coilset: compiling {number} of {len(names)}: {words}")
         stage()
+        with contextlib.suppress(OSError):  # nothing can be stored
+            compiled(name).touch()
 
 
-def _run(case: Case, threads: int) -> None:
-    Analysis(case, MPI.COMM_SELF, threads=threads).run()
+def _run(case: Case) -> None:
+    Analysis(case, MPI.COMM_SELF).run()

@@ -10,6 +10,7 @@ from mpi4py import MPI
 from coilset.meshes.line import line_mesh
 from coilset.model.material import library
 from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.rod.elements import THESIS
 from coilset.model.rod.rod import Rod
 from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import polar
@@ -26,11 +27,12 @@ def ck15():
 
 @pytest.fixture
 def make_rod(ck15):
-    """Rod through given stations; keyword arguments: radius (number), law, rule, comm."""
+    """Rod through given stations; keyword arguments: radius (number), law, rule, comm, element."""
 
-    def make(stations, radius=2.5, law=None, rule=None, comm=MPI.COMM_SELF):
+    def make(stations, radius=2.5, law=None, rule=None, comm=MPI.COMM_SELF, element=THESIS):
         line = line_mesh(np.asarray(stations, float), comm)
-        return Rod(line, np.full(len(stations) - 1, float(radius)), law or ck15, rule or polar())
+        radii = np.full(len(stations) - 1, float(radius))
+        return Rod(line, radii, law or ck15, rule or polar(), element=element)
 
     return make
 

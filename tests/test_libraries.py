@@ -8,22 +8,22 @@ import pytest
 
 WAIT = """
 import sys
-from coilset.model.runtime.libraries import UNUSED, Waiting
+from coilset.model.runtime.libraries import UNUSED, LazyModule
 import dolfinx, numba
-print(all(type(sys.modules[name]) is Waiting for name in UNUSED if name in sys.modules))
+print(all(type(sys.modules[name]) is LazyModule for name in UNUSED if name in sys.modules))
 """
 AGAIN = """
 import sys
-from coilset.model.runtime.libraries import Waiting, WhenUsed
-sys.meta_path.insert(0, WhenUsed(["matplotlib.pyplot"]))
+from coilset.model.runtime.libraries import LazyModule, LazyFinder
+sys.meta_path.insert(0, LazyFinder(["matplotlib.pyplot"]))
 import matplotlib.pyplot
 import matplotlib.pyplot as plt
-waits = type(plt) is Waiting
-print(waits, callable(plt.figure), type(plt) is Waiting)
+waits = type(plt) is LazyModule
+print(waits, callable(plt.figure), type(plt) is LazyModule)
 """
 LINK = """
 import sys, threading
-from coilset.scripts.loading import load_for_solve
+from coilset.scripts.startup import load_for_solve
 load_for_solve()
 for thread in threading.enumerate():
     if thread is not threading.current_thread():
@@ -33,7 +33,7 @@ with open("/proc/self/maps") as linked:
 """
 UNCHANGED = """
 import ctypes
-from coilset.scripts.loading import load_for_solve
+from coilset.scripts.startup import load_for_solve
 
 def beginnings():
     functions = (getattr(ctypes.CDLL(None), name) for name in ("mmap", "munmap", "mremap", "madvise", "brk"))

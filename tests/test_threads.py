@@ -1,6 +1,7 @@
 """Sections that are divided among threads: the same numbers."""
 
-import numba
+import threading
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -20,12 +21,18 @@ def test_parts_are_even_and_large_enough():
     assert Threads(3).ends(1, 3 * LEAST).tolist() == [0, 1]
 
 
-def test_one_thread_does_all_where_numba_has_no_others(monkeypatch):
-    def none():
-        raise ValueError("No threading layer could be loaded.")
+def test_parts_run_side_by_side_and_one_that_fails_is_reported():
+    """Each part has its own number; a part without a result counts as good."""
+    barrier, numbers = threading.Barrier(2, timeout=30.0), []
 
-    monkeypatch.setattr(numba, "get_num_threads", none)
-    assert Threads(3).number == 1
+    def part(ends, number, result):
+        barrier.wait()
+        numbers.append(number)
+        return result if number else None
+
+    assert Threads(2).run(part, 10, LEAST, True)
+    assert not Threads(2).run(part, 10, LEAST, False)
+    assert sorted(numbers) == [0, 0, 1, 1]
 
 
 @pytest.mark.parametrize("kept", [4096, 8], ids=["kept", "passing"])

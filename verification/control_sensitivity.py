@@ -36,7 +36,7 @@ GROWTHS = {
     for name, kind in get_type_hints(control, include_extras=True).items()
     if kind is Growth
 }
-SWITCHES = ("foreseen_forces",)
+SWITCHES = ("predicted_forces",)
 FREE_PENETRATION = 0.02  # wire diameters: the contacts' limit, which stands where no number is given
 AUTOMATIC = (  # of automatic steps only
     "automatic",

@@ -1,9 +1,9 @@
 """The axis of a measured spring, fitted to the points of its wire, and the points moved onto it.
 
 About any other axis, the radius of a coil varies once per turn. So the axis sought is that about which the radius r(t)
-over the turns deviates least, in least squares over the wire, from a cubic spline with knots one turn apart. A cone,
-barrel or hourglass follows such a spline; an oval coil deviates from it twice per turn and noise at random, neither of
-which moves the axis.
+over the turns has the smallest deviation, in least squares over the wire, from a cubic spline with knots one turn
+apart. A cone, barrel or hourglass follows such a spline; an oval coil deviates from it twice per turn and noise at
+random, neither of which moves the axis.
 """
 
 from dataclasses import dataclass

@@ -7,7 +7,8 @@ import numpy as np
 
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.axis import Axis
-from coilset.meshes.springs.ends import OPEN, EndCoils, touching_pitch
+from coilset.meshes.springs.block import block_height
+from coilset.meshes.springs.ends import OPEN, EndCoils
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.stations import ElementsPerTurn, stations
 
@@ -175,29 +176,8 @@ class Spring:
 
     @cached_property
     def block_height(self) -> float:
-        """Distance between the seats when every coil touches the next, mm.
-
-        From the turn t to t + 1 the wire then rises by s(t) = √(d² − (r(t + 1) − r(t))²), with the mean wire diameter
-        d of the two: `touching_pitch`. A pitch p with ∫ p = s over each turn is s(t − ½) at t, to second order; over
-        the first and the last half turn it is constant. So the wire rises by ∫ s dt + ½ (s(0) + s(n − 1)) in n turns.
-        The ends contribute what the wire and its grinding contribute to the free length.
-        """
-        ends = self.free_length - (self.height(self.turns) - self.height(0.0))
-        n = self.turns
-        if n <= 1.0:  # no coil has a next one; the pitch of a coil that goes on
-            mean = 0.5 * (self.wire(0.0) + self.wire(n))
-            return float(n * touching_pitch(mean, (self.radius(n) - self.radius(0.0)) / n) + ends)
-        marks = np.unique(np.concatenate([self.breaks, self.breaks - 1.0]))  # of r and d at t, and at t + 1
-        inside = marks[(marks > 0.0) & (marks < n - 1.0)]
-        within = functions.integral(self._touching_rise, np.concatenate([[0.0], inside, [n - 1.0]])).sum()
-        outer = 0.5 * (self._touching_rise(0.0) + self._touching_rise(n - 1.0))
-        return float(within + outer + ends)
-
-    def _touching_rise(self, turn: np.ndarray | float) -> np.ndarray:
-        """Rise from each turn t ≤ n − 1 to the next where the two touch, mm."""
-        t = np.asarray(turn, dtype=float)
-        wire = 0.5 * (self.wire(t) + self.wire(t + 1.0))
-        return touching_pitch(wire, self.radius(t + 1.0) - self.radius(t))
+        """Distance between the seats at which the spring is solid, mm; see `coilset.meshes.springs.block`."""
+        return block_height(self)
 
     @property
     def active_turns(self) -> float:

@@ -1,4 +1,4 @@
-"""What the wire of a drawn spring went through before it was a spring: entries of the `spring:` section."""
+"""Manufacture of a drawn spring (coiling, stress relief, peening): entries of the `spring:` section."""
 
 from itertools import pairwise
 from typing import Annotated, Self

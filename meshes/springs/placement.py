@@ -44,7 +44,7 @@ def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poiss
     Args:
         spring: `Spring`.
         turns: increasing turns of the nodes, shape (n + 1,).
-        keep: ``points``, the nodes lie on the centre line; ``length``, the chords are as long as their arcs;
+        keep: ``points``, the nodes are on the centre line; ``length``, the chords are as long as their arcs;
             ``compliance``, they are as compliant as the arcs under an axial force.
         poisson: ν, for ``compliance``.
 
@@ -95,10 +95,11 @@ class Placement(NamedTuple):
         return Placement(*(np.ascontiguousarray(values[elements]) for values in self))
 
 
-def straight(elements: int) -> Placement:
-    """The placement of sections on their straight rods, two for each."""
-    zero = np.zeros((elements, 2))
-    return Placement(np.tile(np.eye(6), (elements, 2, 1, 1)), np.ones_like(zero), zero, zero.copy(), round_wire(zero))
+def straight(elements: int, sections: int = 2) -> Placement:
+    """The placement of so many sections on each of some straight rods."""
+    zero = np.zeros((elements, sections))
+    same = np.tile(np.eye(6), (elements, sections, 1, 1))
+    return Placement(same, np.ones_like(zero), zero, zero.copy(), round_wire(zero))
 
 
 def round_wire(like: np.ndarray) -> np.ndarray:
@@ -123,7 +124,7 @@ def section_placement(
 
     Args:
         spring: `Spring`.
-        turns: increasing turns of the nodes, shape (n + 1,); the nodes lie on the centre line.
+        turns: increasing turns of the nodes, shape (n + 1,); the nodes are on the centre line.
         triads: the chords' triads, columns, shape (n, 3, 3).
         abscissae: ξ of the Gauss sections, from 0 to 1, shape (g,).
         curved: whether the sections account for the wire's curvature and torsion, with y along the normal.
@@ -157,7 +158,7 @@ def section_placement(
 
 def chord_placement(spring: Spring, turns: np.ndarray, triads: np.ndarray, abscissae: np.ndarray) -> Placement:
     """The placement of sections on the chords themselves, cut as the true sections are; arguments as above."""
-    return straight(len(triads))._replace(flat=section_placement(spring, turns, triads, abscissae).flat)
+    return straight(len(triads), len(abscissae))._replace(flat=section_placement(spring, turns, triads, abscissae).flat)
 
 
 def _flats(spring: Spring, turn: np.ndarray, upwards: np.ndarray) -> np.ndarray:

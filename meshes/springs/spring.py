@@ -1,4 +1,4 @@
-"""The `spring:` section of the case file, and what is built from it."""
+"""The `spring:` section of the case file, and the geometry built from it."""
 
 from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self

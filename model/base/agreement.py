@@ -1,4 +1,4 @@
-"""What one rank finds out, all ranks know: an error on one alone would leave the others waiting; sums and maxima."""
+"""Collective error handling and reductions: an error on one rank is raised on all, which would wait otherwise."""
 
 from collections.abc import Callable
 from typing import TypeVar

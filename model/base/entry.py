@@ -72,7 +72,7 @@ def explain(error: ValidationError) -> tuple[str, str]:
 
 
 def _number_in_words(text: str) -> str:
-    """What is wrong with a number given as a word, such as `5,0` or `5 mm`."""
+    """The message for a number given as a word, such as `5,0` or `5 mm`."""
     if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", text):
         return f" with a decimal point, as in {text.strip().replace(',', '.')}"
     if re.fullmatch(r"\s*[-+]?\d*\.?\d+\s*[^\d\s.,:][^\d]{0,9}", text):

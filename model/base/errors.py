@@ -19,7 +19,7 @@ class InputError(CoilsetError):
     """Wrong input: names the file, the place in it, the value, and what would be right.
 
     Args:
-        problem: what is wrong and what would be right, without a full stop.
+        problem: the error and how to correct it, without a full stop.
         place: the entry, as in ``spring.wire_diameter``, or a column or line; empty if there is none.
         file: the file's path as the user gave it; empty if the input came from elsewhere.
     """

@@ -90,7 +90,7 @@ def _known(group: type[BaseModel]) -> dict[str, FieldInfo]:
 
 
 def _told(group: type[BaseModel], data: Any, validate: Any) -> Any:
-    """The group of what is no mapping, which some groups can be written as; an error names their entries."""
+    """A group from a value that is no mapping, which some groups accept; otherwise an error names their entries."""
     try:
         return validate(data)
     except ValidationError as error:

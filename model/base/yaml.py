@@ -62,7 +62,7 @@ class _Values:
         if self.count > LARGEST:
             raise _problem(node, f"more than {LARGEST:,} values; are aliases repeated by aliases?")
         if depth > MAX_NESTING:  # deeper than its text: through aliases
-            raise _problem(node, f"nested deeper than {MAX_NESTING} levels; does an alias lie within what it repeats?")
+            raise _problem(node, f"nested deeper than {MAX_NESTING} levels; does an alias refer to what contains it?")
         kind = node.tag.removeprefix(TAG)
         if isinstance(node, yaml.MappingNode) and kind == "map":
             return self._mapping(node, depth)
@@ -70,7 +70,7 @@ class _Values:
             return [self.of(child, depth + 1) for child in node.value]
         if isinstance(node, yaml.ScalarNode):
             return _scalar(node, kind)
-        raise _problem(node, f"the tag {shortened(node.tag)} is not known here")
+        raise _problem(node, f"the tag {shortened(node.tag)} is not supported")
 
     def _mapping(self, node: yaml.MappingNode, depth: int) -> dict[str, Any]:
         entries: dict[str, Any] = {}
@@ -99,7 +99,7 @@ def _scalar(node: yaml.ScalarNode, kind: str) -> str | int | float | bool | None
         raise _problem(node, f"'{shortened(text)}' cannot be read as the number or truth value it should be") from None
     if kind == "str":
         return _word(node)
-    raise _problem(node, f"the tag {shortened(node.tag)} is not known here")
+    raise _problem(node, f"the tag {shortened(node.tag)} is not supported")
 
 
 def _word(node: yaml.ScalarNode) -> str:

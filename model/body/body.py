@@ -1,7 +1,8 @@
 """What equilibrium requires of a body: stresses for an increment, internal forces, a tangent."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 import numpy as np
 from dolfinx import fem
@@ -17,199 +18,158 @@ class Moment(NamedTuple):
     temperature: float
 
 
-class Body(Protocol):
+class Body(ABC):
     """A structure whose unknowns are the increments since the last equilibrium.
+
+    What not every body has comes with a default: no rotations, no predicted forces, no dependence on time, and an
+    unknown error. A body with `element_dofs` gives its tangent by elements, any other one assembles it itself.
 
     Attributes:
         increment: the increments, mm and rad, a function of the body's space; ghosts are up to date for `update`.
         state: State with the body's own fields.
+        axial_force: E A, the size of forces against which others are rounding, and of the spurious forces that finite
+            rotations cause after a correction, N.
+        rotation_dofs: local numbers of the nodes' rotations, shape (nodes, 3); ghosts come after all owned unknowns.
+        element_dofs: local numbers of the owned elements' unknowns, shape (cells, k); None if it `assembles`.
+        predicts: whether a Newton correction predicts the internal forces better than the state in which it ends.
     """
 
     increment: fem.Function
     state: State
+    axial_force: float = 0.0
+    rotation_dofs: np.ndarray = np.empty((0, 3), np.int32)
+    element_dofs: np.ndarray | None = None
+    predicts: bool = False
 
+    # ---- evaluation ------------------------------------------------------------------------------------------------
+
+    @abstractmethod
     def update(self) -> bool:
         """Update the trial state to `increment`.
 
         Returns:
             True, or False if no stress is found at some point of this rank; then the step must be cut.
         """
-        ...
 
-    def follow(self) -> None:
+    def advance(self) -> None:
         """Update what carries no load to the end of the increment, before that becomes the equilibrium."""
-        ...
 
+    @abstractmethod
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ σ : δε of the owned cells at the trial state to a local array (owned and ghost unknowns), N, N mm."""
-        ...
-
-    def create_matrix(self, rows: int) -> PETSc.Mat:
-        """A new matrix for the tangent with `rows` rows on this rank; those after the body's own are extra ones."""
-        ...
 
     @property
+    @abstractmethod
     def constraint_weight(self) -> float:
         """Stiffness that converts a missed prescribed increment to a force, so that all residuals are forces, N/mm."""
-        ...
 
+    @abstractmethod
     def rounding(self, increments: np.ndarray) -> float:
         """Norm of the out-of-balance forces due to rounding, N; collective.
 
         Args:
             increments: this rank's part of the system's increments.
         """
-        ...
 
+    def to_charts(self, values: np.ndarray) -> None:
+        """Convert the moments at the owned rotations of `values` from the fixed frame to the trial state's charts."""
 
-@runtime_checkable
-class Foresees(Protocol):
-    """A body whose internal forces a Newton correction predicts better than the state in which it ends does.
+    # ---- tangent ---------------------------------------------------------------------------------------------------
 
-    Attributes:
-        correction: mm and rad, a function of the body's space; ghosts are up to date for `predict`.
-        axial_force: size of the spurious forces that finite rotations cause after a correction, N.
-    """
+    @abstractmethod
+    def create_matrix(self, rows: int) -> PETSc.Mat:
+        """A new matrix for the tangent with `rows` rows on this rank; those after the body's own are extra ones.
 
-    correction: fem.Function
-    axial_force: float
+        That of a body without `element_dofs` has room for all of its entries.
+        """
 
-    def stand(self) -> bool:
-        """Bring the trial state to the last equilibrium and its forces, as far as `predict` needs them.
+    def element_tangents(self, share: float | None = None) -> Iterator[tuple[slice, np.ndarray]]:
+        """Derivatives of the internal forces of some owned elements after others, shape (elements, k, k).
 
-        The increments are zero. The material is not asked.
+        The next ones may overwrite them. Rows of prescribed increments become those of `constraint_weight` times the
+        identity. Columns stay, so that even a large correction meets them.
+
+        Args:
+            share: with the section forces predicted after this share of the correction; None: with the actual ones.
+        """
+        raise NotImplementedError
+
+    def tangent(self, matrix: PETSc.Mat) -> None:
+        """Add the derivative of the internal forces at the trial state to a matrix, without assembling it."""
+        raise NotImplementedError
+
+    def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
+        """Set the rows of prescribed increments (global numbers) to those of `constraint_weight` times the identity."""
+        raise NotImplementedError
+
+    # ---- mixed integration point (MIP) iteration -------------------------------------------------------------------
+
+    def recall(self) -> bool:
+        """Set the trial state and its forces to the last equilibrium as far as `predict` needs them.
+
+        The increments are zero. The constitutive law is not evaluated.
 
         Returns:
             False, and nothing is done, if the forces at the last equilibrium were not kept; the same on every rank.
         """
-        ...
+        return False
 
-    def predict(self) -> None:
-        """Predict the forces after `correction`, from the trial state."""
-        ...
+    def predict(self, correction: np.ndarray) -> None:
+        """Predict the section forces after a correction of the local unknowns, mm and rad, from the trial state."""
 
-    def foresee(self, length: float) -> None:
-        """Build the tangents with the forces predicted after `length` of the correction, until `stop_foreseeing`."""
-        ...
+    def first_order_forces(self, vector: np.ndarray, share: float) -> None:
+        """As `internal_forces`, without the contribution of strains of second order in the correction.
 
-    def stop_foreseeing(self) -> None:
-        """Build the tangents with the forces of the trial state."""
-        ...
-
-    def forces_without_second_order(self, vector: np.ndarray, length: float) -> None:
-        """Add the internal forces at the trial state, which lies `length` of the correction away.
-
-        They are as in Body, but without the contribution of strains of second order in the correction.
+        Args:
+            vector: as in `internal_forces`.
+            share: of the predicted correction, after which the trial state is.
         """
-        ...
+        raise NotImplementedError
 
-
-@runtime_checkable
-class EstimatesErrors(Protocol):
-    """A body that can estimate the error of its internal forces due to the step size.
-
-    Attributes:
-        axial_force: E A, the size of forces against which others are rounding, N.
-    """
-
-    axial_force: float
+    # ---- error due to the step size --------------------------------------------------------------------------------
 
     def estimate_errors(self) -> None:
-        """Prepare for estimates from now on; adds fields to the state, so call it before anything is saved."""
-        ...
+        """Prepare for estimates from now on; may add fields to the state, so call it before anything is saved."""
 
-    def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
-        """Works of the errors; call it once at the end of a step, before the commit.
+    def error_works(self, ratio: float, kinked: bool, final: bool) -> tuple[float, float, float, float]:
+        """Works of the errors of the internal forces; call it once at the end of a step, before the commit.
 
         Args:
             ratio: size of the step over that of the previous one on the same path, 0 if there is none.
             kinked: whether the path of strains has a kink within the step, in the worst case in its middle.
-            stands: whether the step is committed in any case; else the next `restore` of the state may give it up.
+            final: whether the step is committed in any case; else the next `restore` of the state may discard it.
 
         Returns:
             Four works: of the error of the internal forces on the step's deformation; of the share of the error that
             this step added, on the step's deformation and on that of the very first step; of the whole error on the
             latter. For this rank's cells, N mm; not a number if the error is unknown.
         """
-        ...
+        return np.nan, np.nan, np.nan, np.nan
 
     def resolves_time(self, fall: float) -> bool:
-        """Whether the error of a step on trial, in which time passes at constant height, can be told from its works.
+        """Whether the error of a trial step, in which time passes at constant height, follows from its works.
 
         Args:
             fall: of the logarithm of the force in the step. For this rank's cells.
         """
-        ...
+        return True
 
-    def rejoin_finer_path(self) -> None:
+    def restart_estimate(self) -> None:
         """Estimate from the last equilibrium on, which was reached by steps without an estimate."""
-        ...
 
-
-@runtime_checkable
-class FillsMatrix(Protocol):
-    """A body that assembles its tangent itself, in a matrix that has room for all of it from the start."""
-
-    def tangent(self, matrix: PETSc.Mat) -> None:
-        """Add the derivative of the internal forces at the trial state to a matrix, without assembling it."""
-        ...
-
-    def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
-        """Set the rows of prescribed increments (global numbers) to those of `constraint_weight` times the identity."""
-        ...
-
-
-@runtime_checkable
-class OfElements(Protocol):
-    """A body whose tangent is a sum over elements with equally many unknowns; other bodies FillsMatrix.
-
-    Rows of prescribed increments are those of `constraint_weight` times the identity. Columns stay, so that even a
-    large correction meets them.
-
-    Attributes:
-        element_dofs: local numbers of the owned elements' unknowns, shape (cells, k).
-    """
-
-    element_dofs: np.ndarray
-
-    def element_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
-        """Derivatives of the internal forces of some owned elements after others, shape (elements, k, k).
-
-        The next ones may write over them.
-        """
-        ...
-
-
-@runtime_checkable
-class HasRotations(Protocol):
-    """A body with rotations among its unknowns.
-
-    Attributes:
-        rotation_dofs: local numbers of the nodes' rotations, shape (nodes, 3); ghosts come after all owned unknowns.
-    """
-
-    rotation_dofs: np.ndarray
-
-    def to_charts(self, values: np.ndarray) -> None:
-        """Convert the moments at the owned rotations of `values` from the fixed frame to the trial state's charts."""
-        ...
-
-
-@runtime_checkable
-class PassesTime(Protocol):
-    """A body whose material depends on time."""
+    # ---- time ------------------------------------------------------------------------------------------------------
 
     @property
     def clock(self) -> np.ndarray:
         """At the last equilibrium: hours since the start, temperature (K), hours at the constants' temperature."""
-        ...
+        return np.zeros(3)
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
         """Let a step take time, from the last equilibrium through `middle` half way to `end`; call it before solving.
 
-        This is forgotten when the step is committed or abandoned.
+        Commit and restore end this.
 
         Raises:
             ValueError: if the material does not depend on time.
         """
-        ...
+        raise ValueError("this body's material is rate-independent")

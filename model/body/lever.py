@@ -47,11 +47,11 @@ class Lever:
         node: number of the local node.
         arm: from the head's point to the node in the stress-free state, shape (3,), mm.
         u, rotations: the node's unknowns, shape (3,) each.
-        cells: nodes of this rank's cells, shape (cells, 2); elements: their unknowns, shape (cells, 14).
+        cells: nodes of this rank's cells, shape (cells, 2); elements: their unknowns, shape (cells, k).
 
     Attributes:
         swing: Swing on trial.
-        force: force of the cells on the node when it was last replaced, shape (3,), N.
+        force: of the cells on the node, kept for the tangent, shape (3,), N.
     """
 
     def __init__(
@@ -80,13 +80,17 @@ class Lever:
         correction[self.u] += self.swing.first @ correction[self.rotations]
 
     def carry_forces(self, cells: slice, forces: np.ndarray) -> None:
-        """Replace forces of cells on the node by those on the head, shape (cells, 14), N and N mm."""
+        """Replace forces of cells on the node by those on the head, shape (cells, k), N and N mm."""
         for cell, u, rotations in self._within(cells):
+            forces[cell, rotations] += self.swing.of_force(forces[cell, u])[0]
+
+    def keep_force(self, cells: slice, forces: np.ndarray) -> None:
+        """Keep the force of cells on the node, shape (cells, k), for `carry_tangents`."""
+        for cell, u, _ in self._within(cells):
             self.force = forces[cell, u].copy()
-            forces[cell, rotations] += self.swing.of_force(self.force)[0]
 
     def carry_tangents(self, cells: slice, K: np.ndarray) -> None:
-        """Replace tangents of cells by the node's unknowns by those by the head's, shape (cells, 14, 14)."""
+        """Replace tangents of cells by the node's unknowns by those by the head's, shape (cells, k, k)."""
         for cell, u, rotations in self._within(cells):
             X, one = self.swing.first, K[cell]
             one[rotations] += X.T @ one[u]

@@ -27,7 +27,7 @@ class Field:
     Attributes:
         trial: written by evaluations; always the same array object, so that others may hold a reference.
         equilibrium: its values when the last equilibrium was committed, in the same shape; the same array as `trial`
-            where it lies in place.
+            where it is kept once.
         where: what the first axis counts.
     """
 

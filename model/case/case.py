@@ -91,8 +91,12 @@ class MeshSpec(Strict):
     ] = None
     axis: Annotated[
         Literal["curved", "chords"],
-        Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
+        Field(description="curved: sections are on the true centre line; chords: on the polygon of the thesis"),
     ] = "curved"
+    element: Annotated[
+        Literal["mixed", "thesis"],
+        Field(description="mixed: section forces in equilibrium within the element, 3 sections; thesis: its own, 2"),
+    ] = "thesis"
     section: SectionSpec = SectionSpec()
 
     @model_validator(mode="after")
@@ -145,8 +149,21 @@ class ContactSpec(Strict):
 class ControlSpec(Strict):
     """All numbers that control the iteration and the steps."""
 
+    RENAMED: ClassVar[dict[str, str]] = {"newton.foreseen_forces": "newton.predicted_forces"}
     newton: Annotated[NewtonControl, Field(description="how one step is solved")] = NewtonControl()
     steps: Annotated[StepControl, Field(description="how steps follow each other")] = StepControl()
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _earlier_name(cls, data: Any, validate: Any) -> Any:
+        """Accept an entry of the plain class `NewtonControl` by its earlier name."""
+        newton = data.get("newton") if isinstance(data, dict) else None
+        if not isinstance(newton, dict) or "foreseen_forces" not in newton or "predicted_forces" in newton:
+            return validate(data)
+        names = {"foreseen_forces": "predicted_forces"}
+        group = validate(data | {"newton": {names.get(name, name): value for name, value in newton.items()}})
+        group._earlier = tuple(cls.RENAMED)
+        return group
 
 
 def _one_value(value: Any) -> Any:
@@ -217,7 +234,7 @@ class Case(Strict):
     ] = None
     ends: Annotated[
         Literal["seats", "clamped"],
-        Field(description="seats: the spring stands between seats; clamped: both tips of the wire are clamped"),
+        Field(description="seats: the spring is compressed between seats; clamped: both tips of the wire are clamped"),
     ] = "seats"
     seats: SeatsSpec = SeatsSpec()
     heads: HeadsSpec = HeadsSpec()
@@ -339,7 +356,7 @@ class Case(Strict):
 
     @property
     def past(self) -> list[str]:
-        """Entries of `spring` that say what its wire has been through; a wire without is free of stress."""
+        """Entries of `spring` on the wire's manufacture; without them the wire is free of stress."""
         if not isinstance(self.spring, SpringSpec):
             return []
         return [name for name in ("made_by", "peening") if getattr(self.spring, name) is not None]

@@ -137,7 +137,7 @@ TwoNewtonMillimetres = Annotated[list[NewtonMillimetres], Field(strict=False, mi
 
 
 class HeadTarget(Strict):
-    """Where a head goes besides the axis, or what acts on it: x and y across the spring's axis, or about it."""
+    """Displacement of a head, or load on it, besides the axis: x and y across the spring's axis, or about it."""
 
     sideways: Annotated[
         list[Millimetres] | None,
@@ -204,7 +204,7 @@ class HeadTarget(Strict):
         return ", ".join(words)
 
     def drives(self, first: int) -> Iterator[Drive]:
-        """What it drives; `first`: number of the head's first freedom."""
+        """Targets of its freedoms; `first`: number of the head's first freedom."""
         for name, values in self._given.items():
             kind: Literal["value", "force"] = "force" if name in CONJUGATE else "value"
             size = math.pi / 180.0 if name in ("tilt", "turn") else 1.0

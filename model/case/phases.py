@@ -19,8 +19,8 @@ class Target(Strict):
     )
     height: Annotated[float | None, Unit("mm"), Field(gt=0, description="distance between the seats, mm")] = None
     force: Annotated[float | None, Unit("N"), Field(description="axial force, compression positive, N")] = None
-    bottom: Annotated[HeadTarget | None, Field(description="where the bottom head goes besides")] = None
-    top: Annotated[HeadTarget | None, Field(description="where the top head goes besides")] = None
+    bottom: Annotated[HeadTarget | None, Field(description="other freedoms of the bottom head")] = None
+    top: Annotated[HeadTarget | None, Field(description="other freedoms of the top head")] = None
 
     @property
     def heads(self) -> dict[str, HeadTarget]:
@@ -69,7 +69,7 @@ Marks = Annotated[
 
 
 class Stepped(Strict):
-    """What is done in steps."""
+    """A phase in steps."""
 
     steps: Annotated[
         Annotated[Whole, Field(gt=0, le=100_000), Tag("(number)")]
@@ -132,7 +132,7 @@ class Phase(Stepped):
         return isinstance(self.to, str) or bool(self.to.axial)
 
     def goal(self, free_length: float, block_height: float) -> tuple[Literal["height", "force"], float]:
-        """What is driven, the height between the seats, mm, or the axial force, N, and its value at the end.
+        """The driven quantity, height between the seats, mm, or axial force, N, and its value at the end.
 
         Of a phase that drives other freedoms only, the free length; see `drives_axially`.
         """
@@ -197,7 +197,7 @@ class TimePhase(Stepped):
 
     @property
     def duration(self) -> Duration:
-        """How long, and what is kept."""
+        """Duration, and the quantity kept constant."""
         duration = self.hold or self.heat
         assert duration is not None
         return duration
@@ -227,12 +227,12 @@ AnyPhase = Annotated[
 
 
 def heads_of(phase: AnyPhase) -> dict[str, HeadTarget]:
-    """What a phase does to the heads besides the axis, by end."""
+    """Targets of the heads besides the axis in a phase, by end."""
     return phase.heads if isinstance(phase, Phase) else {}
 
 
 def drives_at(loading: Sequence[AnyPhase], number: int) -> tuple[Drive, ...]:
-    """What drives the heads' freedoms in a phase, by its number.
+    """Targets of the heads' freedoms in a phase, by its number.
 
     A freedom that it does not name stays as an earlier phase left it: where it is, or under its force.
     """

@@ -1,4 +1,4 @@
-"""What the entries of an input file are, read off its models: the rows of the reference, and of the test that compares.
+"""Entries of an input file, read off its models: the rows of the reference, and of the test that compares.
 
 A group is a model of pydantic or a dataclass. Its unit is an `annotated_types.Unit` beside the type, `1` for a real
 number without one; its meaning is the description of its Field, its line under Attributes, or what its group is.
@@ -28,7 +28,7 @@ class Form:
 
     Attributes:
         kind: in words, such as `number` or `list of numbers`.
-        range: what is allowed of it, in signs; empty without bounds.
+        range: its bounds, in signs; empty without bounds.
         unit: of a number; empty where none is given.
         is_real: whether it holds real numbers, which need a unit.
         groups: classes of the groups of entries in it.
@@ -57,18 +57,18 @@ class Row:
 
     @property
     def range(self) -> str:
-        """What is allowed of a number, in signs."""
+        """Bounds of a number, in signs."""
         return ", ".join(dict.fromkeys(form.range for form in self.forms if form.range))
 
     @property
     def groups(self) -> tuple[type, ...]:
-        """Classes of the groups that may stand here."""
+        """Classes of the groups that are allowed here."""
         return tuple(group for form in self.forms for group in form.groups)
 
 
 @dataclass
 class Group:
-    """A group of entries and the places of the file where it stands."""
+    """A group of entries and its places in the file."""
 
     model: type
     rows: list[Row]
@@ -167,7 +167,7 @@ def _descriptions(annotation: Any) -> Iterator[str]:
 
 
 def _forms(annotation: Any, metadata: tuple[Any, ...]) -> Iterator[Form]:
-    """The forms that a type allows; `metadata` stands beside it, that of the innermost first."""
+    """The forms that a type allows; `metadata` belongs to it, that of the innermost first."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         within: list[Any] = []
@@ -211,7 +211,7 @@ def _least(metadata: tuple[Any, ...]) -> str:
 
 
 def _range(metadata: tuple[Any, ...]) -> str:
-    """Bounds in signs; a validator that has bounds of its own says them in its docstring."""
+    """Bounds in signs; a validator with bounds of its own gives them in its docstring."""
     own = [(inspect.getdoc(extra.func) or "").rstrip(".") for extra in metadata if isinstance(extra, AfterValidator)]
     bounds = [
         f"{SIGNS[type(extra)][1]} {_number(getattr(extra, SIGNS[type(extra)][0]))}"

@@ -1,4 +1,4 @@
-"""Entries replaced by their path: `--set mesh.elements_per_turn=32`, and what a sweep varies."""
+"""Entries replaced by their path: `--set mesh.elements_per_turn=32`, and the inputs of a sweep."""
 
 from pathlib import Path
 from typing import Any
@@ -46,7 +46,7 @@ def put(data: dict[str, Any], entry: str, value: Any, place: str) -> None:
         data: changed in place.
         entry: where to; groups that are not there are made.
         value: the new value.
-        place: where the user asked for it, for messages.
+        place: source of the setting, for messages.
 
     Raises:
         InputError: if the path leads through something that has no entries.

@@ -10,7 +10,7 @@ from coilset.model.case.phases import Phase, Target, TimePhase
 from coilset.model.material.law.law import Law
 
 SLACK = 1e-9  # of the free length: rounding of a height that was computed
-BORNE = 2.0  # times the elastic force at which all coils lie on each other: beyond it a target is no spring's any more
+BORNE = 2.0  # times the elastic force at which all coils are in contact: a target beyond it is not reasonable
 
 
 def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
@@ -23,7 +23,7 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
 
     Raises:
         InputError: with the numbers: seats that would have to pull, a height below block, or a force far above the one
-            at which all coils lie on each other.
+            at which all coils are in contact.
     """
     lowest = lowest_height(case, spring)
     greatest = BORNE * closing_force(spring, shear_modulus)
@@ -35,14 +35,14 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
             _not_below(phase.to, spring.free_length, lowest, place)
             if phase.to.force is not None and phase.to.force > greatest:
                 raise InputError(
-                    f"is {phase.to.force:g} N, but all coils of this spring lie on each other at about "
+                    f"is {phase.to.force:g} N, but all coils of this spring are in contact at about "
                     f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
                     f"{place}.force",
                 )
 
 
 def lowest_height(case: Case, spring: Spring) -> float:
-    """The least height that a target may have, mm: at block, or 0 between seats with which the block is not known."""
+    """The minimum height of a target, mm: at block, or 0 between seats for which the block height is unknown."""
     flat = case.ends == "clamped" or {case.seats.bottom.shape, case.seats.top.shape} == {"flat"}
     return spring.block_height if flat else 0.0
 
@@ -63,7 +63,7 @@ def check_steps(case: Case) -> None:
 
 
 def check_times(case: Case, law: Law) -> None:
-    """Refuse a temperature that the material does not know, and phases in time of one that knows no time.
+    """Refuse a temperature outside the material's table, and phases in time of a rate-independent material.
 
     Raises:
         InputError: with the entry.
@@ -105,7 +105,7 @@ def check_times(case: Case, law: Law) -> None:
 
 
 def check_known(law: Law, temperature: float | None, place: str) -> None:
-    """Refuse a temperature that the material does not know.
+    """Refuse a temperature outside the material's table.
 
     Raises:
         InputError: with the entry of the case, where the law would name its own file.
@@ -118,9 +118,9 @@ def check_known(law: Law, temperature: float | None, place: str) -> None:
 
 
 def closing_force(spring: Spring, shear_modulus: float) -> float:
-    """Force at which the last coil of an elastic spring lies on the next, from the torsion of its wire, N.
+    """Force at which the last coil of an elastic spring closes, from the torsion of its wire, N.
 
-    A coil that rises by p over the rise p0 with which it lies on the next closes at F = G d⁴ (p − p0)/(8 D³). A spring
+    A coil that rises by p over the rise p0 at contact closes at F = G d⁴ (p − p0)/(8 D³). A spring
     of less than a turn has no coils to close: infinite.
     """
     if spring.turns <= 1.0:
@@ -147,7 +147,11 @@ def _only_press(target: Target, free_length: float, place: str) -> None:
 def _not_below(target: Target, free_length: float, lowest: float, place: str) -> None:
     travel, slack = free_length - lowest, SLACK * free_length
     if target.travel is not None and target.travel > travel + slack:
-        end = "where it is at block; give block, or less" if lowest else "which is its free length; give less"
+        end = (
+            f"to its block height of {lowest:.6g} mm; give block, or less"
+            if lowest
+            else "which is its free length; give less"
+        )
         raise InputError(
             f"is {target.travel:g} mm, but the spring can only be compressed by {travel:.6g} mm, {end}",
             f"{place}.travel",

@@ -3,17 +3,17 @@
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
 those of the n stations come x, y, z and rotations θx, θy, θz of the bottom and of the top seat, 3 n + j, and after
 these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Every rank evaluates the contacts that act
-on its own degrees of freedom: those of its part of the wire, and those of other parts near it. It is told the positions
-that these depend on, see coilset.model.equilibrium.surroundings.
+on its own degrees of freedom: those of its part of the wire, and those of other parts near it. It gets the
+positions that these depend on, see coilset.model.equilibrium.halo.
 
-Every kind is a `Contact`. What only some of them do has a protocol of its own, asked for by isinstance: `BearsOnWire`,
-`LimitsStep`, `HasMemory`, `Augmented`, `ActsNearby`.
+Every kind is a `Contact`.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,13 +26,13 @@ SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
 LEVEL = 2  # the one along the spring's axis
 # A point counts as closed from this part of c w on, the force of its stiffness c over the distance w of its onset: by
 # the law of the onset, c p²/(4 w), it has then sunk in by 4e-4 w, two millionths of a millimetre for a wire of 5 mm.
-# What presses by less does so by the tolerance of the iteration.
+# Smaller forces are within the tolerance of the iteration.
 CLOSED_OF_ONSET_FORCE = 4e-8
 
 
 @dataclass(frozen=True)
 class Known:
-    """The part of the wire whose positions a rank knows.
+    """The part of the wire whose positions a rank has.
 
     Attributes:
         elements: ranges of elements of which all stations of the centre line's cubics are known, ascending, shape
@@ -56,7 +56,7 @@ class TrialPositions(NamedTuple):
         x: station positions, shape (n, 3), mm.
         seats: x, y, z and rotation vector of the bottom seat, then of the top seat, shape (12,), mm and rad.
         rotations: rotation vectors of the stations since the last equilibrium, shape (n, 3), rad, or None if no contact
-            asked for them.
+            needs them.
         known: the part of the wire whose positions and rotations are known, or None if it is all of it. Rows of the
             other stations have no meaning.
     """
@@ -149,70 +149,50 @@ def one_sided(g: np.ndarray, c: np.ndarray, onset: float) -> tuple[np.ndarray, n
     return c * (within**2 / (4.0 * onset) + np.maximum(-g - 2.0 * onset, 0.0)), c * within / (2.0 * onset)
 
 
-class Contact(Protocol):
-    """A kind of contact."""
+class Contact(ABC):
+    """A kind of contact. What not every kind has comes with a default.
 
-    @property
-    def name(self) -> str:
-        """For labels."""
-        ...
+    Attributes:
+        name: for labels.
+        end: `bottom` or `top` if its forces are those of a seat, else None.
+        needs_rotations: whether it needs `TrialPositions.rotations`.
+        points: the wire's points on which it acts, which `Contribution.point` counts; None of a kind without.
+        lengths: length of wire assigned to each of these, shape (m,), mm.
+        memory: arrays that it carries from one equilibrium to the next; the owner of the state commits and restores
+            them. None of a kind without.
+        limits_step: whether it limits the penetration that a correction of the iteration may cause.
+        multiplier_offset: the offset by which each point is pressed in addition to its penetration, mm, part of the
+            memory; None of a kind whose penetration no augmented Lagrangian reduces.
+        aside: number of stations; None of a kind that requires the positions of all stations. Else what acts on a
+            station depends on those that are up to `aside` further along the wire from it, on points of the wire within
+            `reach` of these, and on the stations up to `aside` further from those.
+    """
 
-    @property
-    def end(self) -> str | None:
-        """`bottom` or `top` if its forces are those of a seat, else None."""
-        ...
+    name: str
+    end: str | None = None
+    needs_rotations: bool = False
+    points: WirePoints | None = None
+    lengths: np.ndarray = np.empty(0)
+    memory: Memory | None = None
+    limits_step: bool = False
+    multiplier_offset: np.ndarray | None = None
+    aside: int | None = None
 
-    @property
-    def needs_rotations(self) -> bool:
-        """Whether it needs `TrialPositions.rotations`."""
-        ...
-
+    @abstractmethod
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces and stiffness at a trial state. A kind with a memory writes its trial arrays."""
-        ...
-
-
-@runtime_checkable
-class BearsOnWire(Contact, Protocol):
-    """A contact that acts on points of the wire."""
-
-    @property
-    def points(self) -> WirePoints:
-        """What `Contribution.point` counts."""
-        ...
-
-    @property
-    def lengths(self) -> np.ndarray:
-        """Length of wire assigned to each point, shape (m,), mm."""
-        ...
-
-
-@runtime_checkable
-class LimitsStep(Contact, Protocol):
-    """A contact that limits the penetration caused by a correction of the iteration."""
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm; 0 where no contact. Cheaper than `evaluate`, and writes nothing."""
-        ...
+        return 0.0
 
-
-@runtime_checkable
-class ActsNearby(Contact, Protocol):
-    """A contact that can be evaluated where only the stations near those on which it acts are known.
-
-    What acts on a station depends on those that are up to `aside` further along the wire from it, on points of the wire
-    within `reach` of these, and on the stations up to `aside` further from those.
-    """
-
-    @property
-    def aside(self) -> int:
-        """Number of stations."""
-        ...
+    def augment(self, trial: TrialPositions) -> None:
+        """Increase each point's offset by its penetration, so that the next equilibrium needs less penetration."""
 
     @property
     def reach(self) -> float:
-        """Distance, mm."""
-        ...
+        """Distance, mm; see `aside`."""
+        return 0.0
 
     def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
         """Which of some stations may be among those with which it acts on the seats, shape (m,), bool.
@@ -223,41 +203,10 @@ class ActsNearby(Contact, Protocol):
             seats: of both seats, shape (12,).
             span: how far stations that are `aside` of each other are apart along each axis at most, shape (3,), mm.
         """
-        ...
-
-
-@runtime_checkable
-class HasMemory(Contact, Protocol):
-    """A contact that carries arrays from one equilibrium to the next."""
-
-    @property
-    def memory(self) -> Memory:
-        """The arrays; the owner of the state commits and restores them."""
-        ...
-
-
-@runtime_checkable
-class Iterates(Contact, Protocol):
-    """A contact whose stiffness foresees forces from one iterate to the next; it forgets them when a solve begins."""
+        return np.zeros(len(stations), dtype=bool)
 
     def iterate(self) -> None:
-        """A correction starts from the state of the last evaluation, with its stiffness."""
-        ...
+        """Note that a correction starts from the state of the last evaluation, with its stiffness."""
 
     def forget_iterate(self) -> None:
-        """The next state is not that to which the last correction leads."""
-        ...
-
-
-@runtime_checkable
-class Augmented(HasMemory, Protocol):
-    """A contact whose penetration can be reduced by an augmented Lagrangian."""
-
-    @property
-    def multiplier_offset(self) -> np.ndarray:
-        """The offset by which each point is pressed in addition to its penetration, mm; part of its memory."""
-        ...
-
-    def augment(self, trial: TrialPositions) -> None:
-        """Increase each point's offset by its penetration, so that the next equilibrium needs less penetration."""
-        ...
+        """Forget what the last correction foresees; the next state is another one."""

@@ -89,7 +89,7 @@ def build_seat(
     stiffness: tuple[float, float],
     driven: bool = False,
 ) -> list[Contact]:
-    """The seat of an end, with its groove and the springs on which it stands.
+    """The seat of an end, with its groove and the springs that support it.
 
     Args:
         end: `bottom` or `top`.

@@ -8,21 +8,29 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.extremes import greatest, relative_motion
-from coilset.model.contact.base import Contribution, TrialPositions
-from coilset.model.contact.curve import WirePoints
-from coilset.model.contact.elements import PAIR, coil_elements
+from coilset.model.contact.base import Contact, Contribution, TrialPositions
+from coilset.model.contact.curve import Curve, WirePoints
+from coilset.model.contact.elements import PAIR, Bedding, Pressed, coil_elements
 from coilset.model.contact.memory import Memory
-from coilset.model.contact.search import PLACES, longest_element, near_locations, place, post_stride
+from coilset.model.contact.search import (
+    PLACES,
+    KnownPart,
+    Locations,
+    Points,
+    longest_element,
+    near_locations,
+    place,
+    post_stride,
+)
 
 FEW = 1024  # locations on other coils for which there is room at first
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought
 # Along the wire, a pair depends on three more stations of the cubic, and the search oversteps by two and by two posts.
 STATIONS_ASIDE, POSTS_ASIDE = 5, 2
-Pressed = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # see Coils.pressed
-NO_PAIR = np.empty((0, 3), np.int64), np.empty((0, 2)), np.empty(0), np.empty((0, 3))
+NO_PAIR = Pressed(np.empty((0, 3), np.int64), np.empty((0, 2)), np.empty(0), np.empty((0, 3)))
 
 
-class Coils:
+class Coils(Contact):
     """One-sided bedding between the coils.
 
     Coils that overlap in the stress-free state, as closed ends do because of rounding and the curve's small error,
@@ -38,13 +46,20 @@ class Coils:
         multiplier_offset: by which each point is pressed beyond its penetration at each place, shape (m, PLACES), mm.
     """
 
-    name, end, needs_rotations = "coils", None, False
+    name, limits_step = "coils", True
+    points: WirePoints
+    memory: Memory
+    multiplier_offset: np.ndarray
 
     def __init__(self, points: WirePoints, stations: np.ndarray, bedding: float, onset: float):
         self.points, self.onset, self._room = points, onset, max(FEW, len(points))
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
         self.overlap = np.zeros((len(points), PLACES))
         self._y = np.column_stack([stations, points.line.radius])  # stations of the last search, with their radii
+        line = points.line
+        self._curve = Curve(self._y, line.turns, line.first, line.cubic)
+        self._points = Points(points.weights, points.stations, points.radius, points.turns, self.overlap)
+        self._bedding = Bedding(points.weights, points.element, line.dofs, self.stiffness, onset)
         self._widest, self._all_elements = float(points.line.radius.max()), np.array([[0, len(points.line.lengths)]])
         self.aside = STATIONS_ASIDE + POSTS_ASIDE * post_stride(self._widest, longest_element(self._y))
         pair, where, _ = self.near(TrialPositions(stations, np.empty(0)))
@@ -73,32 +88,15 @@ class Coils:
 
     def near(self, trial: TrialPositions, margin: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pairs of points and locations nearer than `margin`, see `near_locations`, and the points' positions."""
-        points, line, known = self.points, self.points.line, trial.known
+        points, known = self.points, trial.known
         p, active = np.empty((len(points), 3)), trial.points(points)
         self._y[:, :3] = trial.x
         elements = self._all_elements if known is None else known.elements
         longest = longest_element(self._y) if known is None else known.longest
         while True:
             pair, where = np.empty((self._room, 3), np.int64), np.empty((self._room, 2))
-            found = near_locations(
-                active,
-                points.weights,
-                points.stations,
-                points.radius,
-                points.turns,
-                self._y,
-                line.turns,
-                line.first,
-                line.cubic,
-                self.overlap,
-                margin,
-                elements,
-                self._widest,
-                longest,
-                p,
-                pair,
-                where,
-            )
+            out, part = Locations(p, pair, where), KnownPart(elements, self._widest, longest)
+            found = near_locations(active, self._points, self._curve, margin, part, out)
             if found <= self._room:
                 return pair[:found], where[:found], p
             self._room = 2 * found
@@ -134,7 +132,7 @@ class Coils:
             own, points = trial.known.own, self.points
             ours = (own[points.stations[pair[:, 0]]] | own[points.line.stations[pair[:, 1]]]).any(axis=1)
             pair, where, offset = pair[ours], where[ours], offset[ours]
-        return pair, where, offset, p
+        return Pressed(pair, where, offset, p)
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm."""
@@ -142,36 +140,17 @@ class Coils:
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces along the connection of closest points, where these touch."""
-        points, line = self.points, self.points.line
-        pair, where, offset, p = self.pressed(trial)
-        if not len(pair):
+        pressed = self.pressed(trial)
+        if not len(pressed.pair):
             return self._nothing
-        room = Contribution.room(len(pair), PAIR)
-        coil_elements(
-            p,
-            points.weights,
-            self._y,
-            line.first,
-            line.cubic,
-            pair,
-            where,
-            offset,
-            self.stiffness,
-            self.onset,
-            points.element,
-            line.dofs,
-            room,
-        )
+        room = Contribution.room(len(pressed.pair), PAIR)
+        coil_elements(self._curve, self._bedding, pressed, room)
         return Contribution(*room)
 
     @property
     def reach(self) -> float:
-        """Distance of the centre lines up to which pairs are sought; see ActsNearby."""
+        """Distance of the centre lines up to which pairs are sought; see Contact."""
         return 2.0 * self._widest + float(self.multiplier_offset.max()) + self._skin
-
-    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """None; see ActsNearby."""
-        return np.zeros(len(stations), dtype=bool)
 
     def augment(self, trial: TrialPositions) -> None:
         """Increase each point's offset at each place by its penetration."""

@@ -10,6 +10,7 @@ The four weights are cubics in ξ. They are evaluated in two ways: `station_weig
 """
 
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -126,6 +127,21 @@ def slopes(turns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         i, j = (m for m in range(3) if m != k)
         weights[:, k] = (2 * at[:, 0] - t[:, i] - t[:, j]) / ((t[:, k] - t[:, i]) * (t[:, k] - t[:, j]))
     return first, weights
+
+
+class Curve(NamedTuple):
+    """A centre line in compiled loops.
+
+    Attributes:
+        y: stations with their radii, shape (n, 4), mm.
+        turns: of the stations, shape (n,).
+        first, cubic: of the CentreLine.
+    """
+
+    y: np.ndarray
+    turns: np.ndarray
+    first: np.ndarray
+    cubic: np.ndarray
 
 
 class CentreLine:

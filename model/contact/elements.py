@@ -1,14 +1,72 @@
 """Contact elements in compiled loops: what each of them does to the stations that it hangs on, and its stiffness."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
-from coilset.model.contact.curve import STENCIL, point_on_curve, station_weight
+from coilset.model.contact.curve import STENCIL, Curve, point_on_curve, station_weight
 
 COMPILED = {"cache": True, "error_model": "numpy"}
 PAIR = 6 * STENCIL  # displacements of the eight stations of a pair
 FLAT = STENCIL + 1  # levels of a point's stations and of the seat
 Room = tuple[np.ndarray, ...]  # a Contribution's arrays, in the order of its attributes
+
+
+class Bedding(NamedTuple):
+    """What presses the points of a wire apart from another coil.
+
+    Attributes:
+        weights: of the points' four stations, shape (points, 4).
+        element: of the points, shape (points,).
+        element_dofs: degrees of freedom of all elements, shape (elements, 12).
+        stiffness: of the points, N/mm, shape (points,).
+        onset: distance over which contact sets in, mm.
+    """
+
+    weights: np.ndarray
+    element: np.ndarray
+    element_dofs: np.ndarray
+    stiffness: np.ndarray
+    onset: float
+
+
+class Pressed(NamedTuple):
+    """Pairs in contact.
+
+    Attributes:
+        pair, where: as in `search.Locations`, shapes (m, 3) and (m, 2).
+        offset: by which they are pressed beyond their penetration, shape (m,), mm.
+        p: positions of all points, shape (points, 3), mm.
+    """
+
+    pair: np.ndarray
+    where: np.ndarray
+    offset: np.ndarray
+    p: np.ndarray
+
+
+class FlatSeat(NamedTuple):
+    """A flat seat that moves along the axis only.
+
+    Attributes:
+        stations, weights: of all points, shape (m, 4).
+        numbers: degrees of freedom of all points, shape (m, 5).
+        side: 1 where the wire is above it, else −1.
+        reach, offset, stiffness, onset, tip, tip_spring, slack: of the Seat.
+    """
+
+    stations: np.ndarray
+    weights: np.ndarray
+    numbers: np.ndarray
+    side: float
+    reach: np.ndarray
+    offset: np.ndarray
+    stiffness: np.ndarray
+    onset: float
+    tip: int
+    tip_spring: float
+    slack: float
 
 
 @njit(**COMPILED)
@@ -31,21 +89,7 @@ def extent_of_contact(
 
 
 @njit(**COMPILED)
-def coil_elements(
-    p: np.ndarray,
-    weights: np.ndarray,
-    y: np.ndarray,
-    first: np.ndarray,
-    cubic: np.ndarray,
-    pair: np.ndarray,
-    where: np.ndarray,
-    offset: np.ndarray,
-    stiffness: np.ndarray,
-    onset: float,
-    element: np.ndarray,
-    element_dofs: np.ndarray,
-    room: Room,
-) -> None:
+def coil_elements(curve: Curve, bedding: Bedding, pressed: Pressed, room: Room) -> None:
     """Write what the pairs do to the stations.
 
     With q = Σ a_m x_m from the other coil to the point, d = |q|, n = q/d, P = (1 − n nᵀ)/d and a′ = ∂a/∂ξ the gap
@@ -59,14 +103,14 @@ def coil_elements(
         c g_u g_uᵀ − f g_uu = a aᵀ (c n nᵀ − f P) + f g_uξ g_uξᵀ / g_ξξ.
 
     Args:
-        p, weights: points and the weights of their four stations, shapes (points, 3) and (points, 4).
-        y, first, cubic, pair: as in `near_locations`.
-        where: ξ and gap of the pairs, offset: by which they are pressed beyond their penetration, shape (m,), mm.
-        stiffness: of the points, N/mm.
-        onset: distance over which contact sets in, mm.
-        element: of the points; element_dofs: degrees of freedom of all elements, shape (elements, 12).
+        curve: the centre line.
+        bedding: of the points.
+        pressed: the pairs.
         room: written, see Contribution.room.
     """
+    y, _, first, cubic = curve
+    weights, element, element_dofs, stiffness, onset = bedding
+    pair, where, offset, p = pressed
     dofs, forces, k, pressure, penetration, point, onset_force = room
     count, size, half = len(pair), 2 * STENCIL, 3 * STENCIL
     c, dc, ddc = np.empty(4), np.empty(4), np.empty(4)
@@ -109,37 +153,20 @@ def coil_elements(
 
 
 @njit(**COMPILED)
-def flat_seat_elements(
-    points: np.ndarray,
-    x: np.ndarray,
-    stations: np.ndarray,
-    weights: np.ndarray,
-    numbers: np.ndarray,
-    level: float,
-    side: float,
-    reach: np.ndarray,
-    offset: np.ndarray,
-    stiffness: np.ndarray,
-    onset: float,
-    tip: int,
-    tip_spring: float,
-    slack: float,
-    room: Room,
-) -> int:
-    """The points that bear on a flat seat which moves along the axis only, and the tip.
+def flat_seat_elements(points: np.ndarray, x: np.ndarray, level: float, seat: FlatSeat, room: Room) -> int:
+    """The points that press on a flat seat which moves along the axis only, and the tip.
 
     Args:
-        points: numbers of the points that are asked for.
+        points: numbers of the points that are sought for.
         x: positions of the stations, shape (n, 3), mm.
-        stations, weights: of all points, shape (m, 4).
-        numbers: degrees of freedom of all points, shape (m, 5).
-        level: of the seat, mm; side: 1 where the wire lies above it, else −1.
-        reach, offset, stiffness, onset, tip, tip_spring, slack: of the Seat.
-        room: written for the b points that bear, see Contribution.room.
+        level: of the seat, mm.
+        seat: the seat.
+        room: written for the b points that press, see Contribution.room.
 
     Returns:
         b.
     """
+    stations, weights, numbers, side, reach, offset, stiffness, onset, tip, tip_spring, slack = seat
     dofs, forces, k, pressure, penetration, point, onset_force = room
     grad, e = np.empty(FLAT), 0
     for i in points:

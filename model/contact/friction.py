@@ -24,14 +24,14 @@ equilibrium, and B exact. See T. Chan, G. Golub, P. Mulet, SIAM J. Sci. Comput. 
 S. Hüeber, G. Stadler, B. Wohlmuth, SIAM J. Sci. Comput. 30 (2008) 572 for friction.
 """
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 from numba import njit
 
-from coilset.model.contact.base import SEAT_DOFS, Contribution, TrialPositions
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import STENCIL, curve_weights
 from coilset.model.contact.elements import COMPILED, one_sided_at
@@ -47,7 +47,7 @@ ON_SEAT, ON_COIL = 2 * NODAL + SEAT_DOFS, 4 * NODAL  # unknowns of an element
 FORESEEN = 7  # what is kept of an iterate: t*, μ p, λ
 
 
-class Friction(ABC):
+class Friction(Contact):
     """Common parts of both kinds.
 
     Args:
@@ -58,6 +58,7 @@ class Friction(ABC):
     """
 
     needs_rotations = True
+    memory: Memory
 
     def __init__(self, normal: Seat | Coils, mu: float, stations: np.ndarray, seats: np.ndarray):
         self.aside = normal.aside
@@ -107,22 +108,22 @@ class Friction(ABC):
         return Contribution(dofs, *room, none, none, at[0], none)
 
     def iterate(self) -> None:
-        """A correction starts from the last evaluation; see Iterates."""
+        """Keep the last evaluation as the iterate from which a correction starts."""
         at, found = self._trial
         self._iterate[:] = 0.0
         self._iterate[at] = found
 
     def forget_iterate(self) -> None:
-        """The next state is not that to which the last correction leads; see Iterates."""
+        """Forget the last iterate."""
         self._iterate[:] = 0.0
 
     @property
     def reach(self) -> float:
-        """That of the contact that presses; see ActsNearby."""
+        """That of the contact that presses; see Contact."""
         return self.normal.reach
 
     def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """As the contact that presses; see ActsNearby."""
+        """As the contact that presses; see Contact."""
         return self.normal.acts_on_seats(stations, x, seats, span)
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from coilset.model.contact.base import Contribution, TrialPositions, one_sided
+from coilset.model.contact.base import Contact, Contribution, TrialPositions, one_sided
 
 
-class Gaps:
+class Gaps(Contact):
     """One-sided springs between pairs of stations: open beyond the free length, else c times the compression.
 
     Args:
@@ -17,7 +17,7 @@ class Gaps:
     """
 
     # gap elements are few: they do not limit steps, but open and close in the iteration alone, as in the thesis
-    name, end, needs_rotations = "gap", None, False
+    name = "gap"
 
     def __init__(self, pairs: ArrayLike, free_length: ArrayLike, stiffness: ArrayLike, onset: float):
         self.pairs = np.asarray(pairs, dtype=np.int64).reshape(-1, 2)
@@ -47,7 +47,7 @@ class Gaps:
         )
 
 
-class Stops:
+class Stops(Contact):
     """One-sided springs between stations and planes; their supports go with the stations along the planes (7.1.2).
 
     Args:
@@ -58,7 +58,7 @@ class Stops:
         onset: distance over which contact sets in, mm.
     """
 
-    name, end, needs_rotations = "stop", None, False
+    name = "stop"
 
     def __init__(self, stations: ArrayLike, normal: ArrayLike, level: ArrayLike, stiffness: ArrayLike, onset: float):
         self.stations = np.asarray(stations, dtype=np.int64)

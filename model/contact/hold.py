@@ -3,16 +3,16 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from coilset.model.contact.base import Contribution, TrialPositions
+from coilset.model.contact.base import Contact, Contribution, TrialPositions
 from coilset.model.contact.curve import STENCIL, WirePoints
 from coilset.model.contact.plate import Plate, radial
 
 
-class Groove:
-    """The end coil lies in a smooth round groove of its seat, its tip against the groove's end.
+class Groove(Contact):
+    """The end coil is in a smooth round groove of its seat, its tip against the groove's end.
 
     Each point keeps its stress-free distance from the seat's axis by the potential ½ c (ρ − ρ0)², the tip its position
-    along the groove by ½ c (s − s0)². Both sides of the groove support the wire, whether it lies on the bottom or not.
+    along the groove by ½ c (s − s0)². Both sides of the groove support the wire, whether it is on the bottom or not.
     Along
     the groove and away from the seat the wire is free, and it may roll and tilt: the seat takes no moment except that
     of forces.
@@ -26,8 +26,7 @@ class Groove:
         seats: of both seats at the stress-free state, shape (12,).
     """
 
-    needs_rotations = False
-    aside, reach = STENCIL, 0.0  # no other part of the wire matters
+    aside = STENCIL  # no other part of the wire matters
 
     def __init__(
         self, end: str, points: WirePoints, turns: float, stations: np.ndarray, bedding: float, seats: np.ndarray
@@ -60,11 +59,11 @@ class Groove:
         return Contribution(self.dofs[own], force[:, None] * grad, k, none, none, at, none)
 
     def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """Those of the groove; see ActsNearby."""
+        """Those of the groove; see Contact."""
         return np.isin(stations, self.wire.stations[self.at])
 
 
-class Mount:
+class Mount(Contact):
     """A seat on linear springs; they press on the seat, not on the wire.
 
     Args:
@@ -74,8 +73,7 @@ class Mount:
         seats: of both seats, shape (12,), where the springs are slack.
     """
 
-    end, needs_rotations = None, False
-    aside, reach = 0, 0.0
+    aside = 0
 
     def __init__(self, end: str, stations: int, stiffness: ArrayLike, seats: np.ndarray):
         plate = Plate(end, stations)
@@ -87,7 +85,3 @@ class Mount:
         force = self.stiffness[0] @ (trial.seats[self.own] - self.slack)
         none = np.zeros(1)
         return Contribution(self.dofs, force[None], self.stiffness, none, none, np.zeros(1, dtype=int), none)
-
-    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """None; see ActsNearby."""
-        return np.zeros(len(stations), dtype=bool)

@@ -1,11 +1,12 @@
 """Contact search: the closest points of the other coils for points of the wire, in linear time."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from coilset.model.contact.curve import element_polynomials, points_on_wire
+from coilset.model.contact.curve import Curve, element_polynomials, points_on_wire
 
 LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
 PLACES, TURNS_TO_NEXT = 6, 1.5  # of locations, see `place`; turns up to which a location is on the next coil
@@ -185,44 +186,70 @@ def longest_element(y: np.ndarray) -> float:
     return math.sqrt(longest)
 
 
+class Points(NamedTuple):
+    """Points of the wire.
+
+    Attributes:
+        weights, stations: shape (m, 4).
+        radius, turns: shape (m,), radius in mm.
+        overlap: what counts as touching though the bodies overlap, at each `place`, shape (m, PLACES), mm.
+    """
+
+    weights: np.ndarray
+    stations: np.ndarray
+    radius: np.ndarray
+    turns: np.ndarray
+    overlap: np.ndarray
+
+
+class KnownPart(NamedTuple):
+    """The part of a wire whose positions are known.
+
+    Attributes:
+        elements: ranges of elements whose four stations are known, shape (k, 2).
+        widest, longest: largest radius and distance of neighbouring stations along the wire, mm.
+    """
+
+    elements: np.ndarray
+    widest: float
+    longest: float
+
+
+class Locations(NamedTuple):
+    """Locations where points of the wire are near another coil.
+
+    Attributes:
+        p: positions of the points that are sought for, shape (m, 3), mm.
+        pair: point, element and whether the location is inside the wire, shape (capacity, 3).
+        where: ξ and gap, shape (capacity, 2).
+    """
+
+    p: np.ndarray
+    pair: np.ndarray
+    where: np.ndarray
+
+
 @njit(cache=True, error_model="numpy")
 def near_locations(
-    active: np.ndarray,
-    weights: np.ndarray,
-    stations: np.ndarray,
-    radius: np.ndarray,
-    turns: np.ndarray,
-    y: np.ndarray,
-    station_turns: np.ndarray,
-    first: np.ndarray,
-    cubic: np.ndarray,
-    overlap: np.ndarray,
-    margin: float,
-    elements: np.ndarray,
-    widest: float,
-    longest: float,
-    p: np.ndarray,
-    pair: np.ndarray,
-    where: np.ndarray,
+    active: np.ndarray, points: Points, curve: Curve, margin: float, known: KnownPart, out: Locations
 ) -> int:
     """All locations where a point of the wire and another coil are closer than `margin`.
 
     Args:
-        active: numbers of the points that are asked for, ascending.
-        weights, stations: of all points, shape (m, 4), with radius and turn, shape (m,).
-        y: stations with their radii, shape (n, 4); station_turns: shape (n,).
-        first, cubic: of the CentreLine.
-        overlap: what counts as touching though the bodies overlap, at each `place`, shape (m, PLACES), mm.
+        active: numbers of the points that are sought for, ascending.
+        points: all points.
+        curve: the centre line.
         margin: maximum gap, mm.
-        elements: ranges of elements whose four stations are known, shape (k, 2).
-        widest, longest: largest radius and distance of neighbouring stations along the wire, mm.
-        p: written, positions of the `active` points, shape (m, 3), mm.
-        pair: written, point, element and whether the location is inside the wire, shape (capacity, 3).
-        where: written, ξ and gap, shape (capacity, 2).
+        known: the part of the wire whose positions are known.
+        out: written.
 
     Returns:
-        Number of locations; more than `capacity` if the arrays were too short.
+        Number of locations; more than the capacity of `out` if its arrays were too short.
     """
+    weights, stations, radius, turns, overlap = points
+    y, station_turns, first, cubic = curve
+    elements, widest, longest = known
+    p, pair, where = out
     # if elements are much shorter than the wire diameter, only every so many stations are sorted: the posts
     stride = post_stride(widest, longest)
     posts, ranges = find_posts(elements, len(first), stride)

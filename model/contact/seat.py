@@ -5,9 +5,9 @@ In the coordinates q of its plate (plate.py) a flat seat is the plane qz = 0; a 
 
 import numpy as np
 
-from coilset.model.contact.base import LEVEL, Contribution, TrialPositions, one_sided
+from coilset.model.contact.base import LEVEL, Contact, Contribution, TrialPositions, one_sided
 from coilset.model.contact.curve import POINTS_PER_ELEMENT, STENCIL, WirePoints
-from coilset.model.contact.elements import FLAT, flat_seat_elements
+from coilset.model.contact.elements import FLAT, FlatSeat, flat_seat_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
@@ -16,7 +16,7 @@ from coilset.model.contact.plate import Plate, radial
 TIP_SPRING_OF_BEDDING = 1e-5
 
 
-class Seat:
+class Seat(Contact):
     """The bottom or the top seat: it pushes the wire's underside out in proportion to the penetration.
 
     The wire's tip is in contact from first touch, and a soft spring holds it: if it lifts off farther than in the
@@ -39,8 +39,11 @@ class Seat:
         multiplier_offset: by which each point is pressed in addition to its penetration, shape (m,), mm.
     """
 
-    needs_rotations = False
-    aside, reach = STENCIL, 0.0  # no other part of the wire matters
+    limits_step = True
+    points: WirePoints
+    memory: Memory
+    multiplier_offset: np.ndarray
+    aside = STENCIL  # no other part of the wire matters
 
     def __init__(
         self,
@@ -62,7 +65,7 @@ class Seat:
         self.linear = not (moves or slope)
         self.tip = points.tip(end)
         self.stiffness = bedding * points.length
-        # a wire that stands on its tip is supported by its end face, whatever the mesh
+        # a wire on its tip is supported by its end face, whatever the mesh
         self.stiffness[self.tip] = bedding * 2.0 * points.radius[self.tip]
         self.lengths = self.stiffness / bedding
         self.tip_spring = TIP_SPRING_OF_BEDDING * self.stiffness[self.tip]
@@ -82,6 +85,19 @@ class Seat:
         if self.linear:
             levels = np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL + LEVEL)
             self.dofs = np.ascontiguousarray(self.dofs[:, levels])
+        self._flat_seat = FlatSeat(
+            points.stations,
+            points.weights,
+            self.dofs,
+            self.side,
+            self.distance,
+            self.multiplier_offset,
+            self.stiffness,
+            onset,
+            self.tip,
+            self.tip_spring,
+            self.slack,
+        )
 
     def gaps(self, p: np.ndarray, seats: np.ndarray, points: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Gap of the underside at all points or the `points`, at `p`, shape (m, 3), negative for penetration, mm."""
@@ -115,7 +131,7 @@ class Seat:
         return -self.gaps(self.points.at(trial.x, points), trial.seats, points).min(initial=0.0)
 
     def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """Those of which a neighbour may be in contact, and those of the tip; see ActsNearby."""
+        """Those of which a neighbour may be in contact, and those of the tip; see Contact."""
         points = POINTS_PER_ELEMENT * stations
         along_wire = span[2] if self.linear else np.linalg.norm(span)
         near = self.gaps(x, seats, points) < self.multiplier_offset.max() + 2.0 * along_wire
@@ -127,25 +143,9 @@ class Seat:
 
     def _flat(self, trial: TrialPositions) -> Contribution:
         """On a flat seat that moves along the axis only."""
-        points, numbers = self.points, trial.points(self.points)
-        room = Contribution.room(len(numbers), FLAT)  # for as many as could bear, most of them never touched
-        count = flat_seat_elements(
-            numbers,
-            trial.x,
-            points.stations,
-            points.weights,
-            self.dofs,
-            trial.seats[self._level],
-            self.side,
-            self.distance,
-            self.multiplier_offset,
-            self.stiffness,
-            self.onset,
-            self.tip,
-            self.tip_spring,
-            self.slack,
-            room,
-        )
+        numbers = trial.points(self.points)
+        room = Contribution.room(len(numbers), FLAT)  # for as many as could press, most of them never written
+        count = flat_seat_elements(numbers, trial.x, trial.seats[self._level], self._flat_seat, room)
         return Contribution(*[part[:count] for part in room])
 
     def _curved(self, trial: TrialPositions) -> Contribution:

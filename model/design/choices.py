@@ -23,7 +23,7 @@ class Option:
 
     Attributes:
         chosen: values of the chosen unknowns, by their names.
-        found: what was found for the other unknowns; None if there is none.
+        found: values found for the other unknowns; None if there are none.
         reason: why there is none.
     """
 

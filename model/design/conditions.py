@@ -81,7 +81,7 @@ class Condition:
 
 
 def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Condition], dict[str, Any]]:
-    """The conditions of a design, and its case extended by what is needed to evaluate them.
+    """The conditions of a design, and its case extended by the entries needed to evaluate them.
 
     Args:
         spec: DesignFile.

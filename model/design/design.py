@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from coilset.model.design.beforehand import refuse_beforehand
 from coilset.model.design.choices import Options, choose
 from coilset.model.design.conditions import conditions
 from coilset.model.design.evaluation import Evaluation, Evaluator
+from coilset.model.design.feasibility import refuse_infeasible
 from coilset.model.design.file import Design
 from coilset.model.design.reach import look_around, nearest_seen, refuse
 from coilset.model.design.search import Found, Search
@@ -36,7 +36,7 @@ def make_search(
     bounds = np.array([[one.low, one.high] for one in unknowns.values()])
     start = np.array([one.own(name, data) for name, one in unknowns.items()])
     search = Search(evaluator, bounds, wanted, start)
-    refuse_beforehand(evaluator, wanted, bounds)
+    refuse_infeasible(evaluator, wanted, bounds)
     for name, values in design.spec.trade_offs.items():
         for value in values:
             design.check(evaluator.data(bounds.mean(axis=1), None, {name: value}))
@@ -45,7 +45,7 @@ def make_search(
 
 @dataclass(frozen=True)
 class Solution:
-    """What a design comes to.
+    """Result of a design.
 
     Attributes:
         found: the best spring; its `search` has the chosen values fixed.

@@ -24,7 +24,7 @@ from coilset.model.sweep.evaluate import plain
 from coilset.model.sweep.keys import Keys
 
 Plan = tuple[tuple[float, ...] | None, ...]
-"""For each phase: the parts of it at which its steps end; None: automatic, or as the case says."""
+"""For each phase: the parts of it at which its steps end; None: automatic, or as in the case."""
 
 
 @dataclass(frozen=True)
@@ -68,13 +68,13 @@ class Evaluator:
         conditions, data: see `coilset.model.design.conditions.conditions`.
         known: records of earlier evaluations by their keys; those of other unknowns or conditions do not count.
         keep: writes the record of a new one.
-        report: called with every Evaluation, and whether it was known.
+        report: called with every Evaluation, and whether it came from the journal.
         threads: of each run.
 
     Attributes:
         names: of the unknowns in the file.
         named: the same in words, with their units.
-        count: number of evaluations, and of those that were known.
+        count: number of evaluations, and of those from the journal.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Evaluator:
 
         Args:
             x: values of the unknowns.
-            plan: steps of its phases; None: as the case says.
+            plan: steps of its phases; None: as in the case.
             others: other entries, and their values.
         """
         data = copy.deepcopy(dict(self._data))
@@ -169,7 +169,7 @@ class Evaluator:
         phases = range(len(setup.phases))
         plan = tuple(tuple(step.progress for step in result.steps if step.phase == phase) for phase in phases)
         missing = [one.name for one, value in zip(self.conditions, values, strict=True) if value is None]
-        reason = f"{missing[0]} is not known of this run" if missing else ""
+        reason = f"{missing[0]} is not a result of this run" if missing else ""
         return Evaluation(x, np.array(values, float), reason, plan, summary, time.perf_counter() - began)
 
 

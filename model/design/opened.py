@@ -64,7 +64,7 @@ def read_design(folder: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
 
 
 def _searched(design: dict[str, Any], records: list[dict[str, Any]]) -> xr.Dataset:
-    """Evaluations, what was found, and slopes."""
+    """Evaluations, solution, and slopes."""
     data = xr.Dataset(coords={"evaluation": np.arange(1, len(records) + 1)})
     for place, (name, value) in enumerate(design["found"].items()):
         units = {"units": design["unknowns"][name]["unit"] or "1"}

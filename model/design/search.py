@@ -166,7 +166,7 @@ class Search:
         return np.where(met, 0.0, off)
 
     def surrogate(self, u: np.ndarray, others: Mapping[str, Any] | None = None) -> np.ndarray:
-        """Relative deviations of the uniform rod from the conditions; 0 for those that it does not know, shape (m,).
+        """Relative deviations of the uniform rod from the conditions; 0 for those that it cannot compute, shape (m,).
 
         Args:
             u: unknowns, relative to their bounds.
@@ -333,7 +333,7 @@ class Search:
         return lambda u: self.surrogate(u, others) + error.value + error.slopes @ (u - error.about)
 
     def _nearest(self, u: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray, reach: float) -> np.ndarray:
-        """Where the mapped surrogate comes closest to the conditions, no farther away than `reach`."""
+        """Where the mapped surrogate comes closest to the conditions, within `reach`."""
         low, high = np.maximum(u - reach, 0.0), np.minimum(u + reach, 1.0)
         near = np.abs(self.missed(off)).max() < 1e-3  # the surrogate is practically linear over this distance
         if not near or self.is_open:
@@ -362,7 +362,7 @@ class Search:
     def _solve(
         self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray, low: np.ndarray, high: np.ndarray
     ) -> np.ndarray:
-        """Bounded least squares of what is missed; the nearest to the case's own values if many miss nothing."""
+        """Bounded least squares of the deviations; the solution nearest to the case's own values if many have none."""
         if self.is_open and (nearest := self._nearest_own(answer, u, low, high)) is not None:
             return nearest
         room = 1e-12

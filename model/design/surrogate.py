@@ -33,7 +33,7 @@ class Guess:
     """Estimate by the uniform rod.
 
     Attributes:
-        values: of the conditions, shape (m,); NaN for those that the uniform rod does not know.
+        values: of the conditions, shape (m,); NaN for those that the uniform rod cannot compute.
         torque: maximum torque in the wire over that at which its surface yields; 0 for an elastic law.
     """
 
@@ -60,7 +60,7 @@ def guess(case: Case, conditions: Sequence[Condition], load: Callable[[str], Law
     """Take the uniform rod through the load program of a case.
 
     Args:
-        case, conditions: what is run, and which results are needed.
+        case, conditions: to run, and the results that are needed.
         load: gives the law of a material's name.
 
     Raises:

@@ -7,7 +7,6 @@ Penetrations up to a few hundredths of the wire diameter are therefore free; dee
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.contact.base import LimitsStep
 from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
 
@@ -23,7 +22,7 @@ class ContactLimit:
 
     def __init__(self, system: System, control: NewtonControl, free: float) -> None:
         self.system, self.control, self.free = system, control, free
-        self.limiting = [contact for contact in system.contacts if isinstance(contact, LimitsStep)]
+        self.limiting = [contact for contact in system.contacts if contact.limits_step]
 
     def allowed(self, penetration: float) -> float:
         """Penetration up to which a correction may press, from a state with `penetration`, mm."""

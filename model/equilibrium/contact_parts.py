@@ -8,10 +8,10 @@ from mpi4py import MPI
 
 from coilset.model.base.agreement import max_of_ranks
 from coilset.model.body.lever import Swing
-from coilset.model.contact.base import SEAT_DOFS, Augmented, Contact, Contribution, HasMemory, Iterates, LimitsStep
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution
 from coilset.model.contact.memory import Memory
+from coilset.model.equilibrium.halo import Halo
 from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.surroundings import Surroundings
 
 
 class ContactParts:
@@ -22,23 +22,19 @@ class ContactParts:
         contacts: kinds of contact.
 
     Attributes:
-        surroundings: Surroundings.
+        halo: Halo.
         need_rotations: whether some kind needs the rotations of the nodes.
     """
 
     def __init__(self, layout: LineLayout, contacts: Sequence[Contact]) -> None:
         self.layout, self.comm, self.contacts = layout, layout.comm, contacts
-        self.surroundings = Surroundings(layout, contacts)
+        self.halo = Halo(layout, contacts)
         self.need_rotations = any(contact.needs_rotations for contact in contacts)
-        # asked once, for the test of a protocol takes longer than what it guards
-        self._limiting = [contact for contact in contacts if isinstance(contact, LimitsStep)]
-        self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact in self._limiting]
-        self._augmented = [contact for contact in contacts if isinstance(contact, Augmented)]
-        self._iterating = [contact for contact in contacts if isinstance(contact, Iterates)]
+        self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact.limits_step]
+        self._limiting = [contacts[number] for number in self._limiting_numbers]
+        self._augmented = [contact for contact in contacts if contact.multiplier_offset is not None]
         self._kept = [
-            contact.memory
-            for contact in contacts
-            if isinstance(contact, HasMemory) and not isinstance(contact, Augmented)
+            contact.memory for contact in contacts if contact.memory is not None and contact.multiplier_offset is None
         ]
 
     def evaluate(
@@ -54,7 +50,7 @@ class ContactParts:
             For each kind the elements that act on this rank's unknowns; the maximum penetration of coils and seats, mm,
             and the number of closed elements of all ranks.
         """
-        trial = self.surroundings.trial(x, seats, rotations)
+        trial = self.halo.trial(x, seats, rotations)
         parts = [contact.evaluate(trial) for contact in self.contacts]
         deepest = max([parts[number].deepest for number in self._limiting_numbers], default=0.0)
         if self.comm.size == 1:
@@ -67,7 +63,7 @@ class ContactParts:
 
     def max_penetration(self, x: np.ndarray, seats: np.ndarray) -> float:
         """Maximum penetration of coils and seats, mm, cheaper than `evaluate`; collective."""
-        trial = self.surroundings.trial(x, seats)
+        trial = self.halo.trial(x, seats)
         deepest = max(contact.max_penetration(trial) for contact in self._limiting)
         return max_of_ranks(self.comm, deepest)
 
@@ -82,29 +78,30 @@ class ContactParts:
         return [Contribution.joined(each) for each in zip(*self.comm.allgather(once), strict=True)]
 
     def iterate(self) -> None:
-        """A correction starts from the last evaluation."""
-        for contact in self._iterating:
+        """Note that a correction starts from the last evaluation."""
+        for contact in self.contacts:
             contact.iterate()
 
     def forget_iterate(self) -> None:
-        """The next state is not that to which the last correction leads."""
-        for contact in self._iterating:
+        """Forget what the last correction foresees; the next state is another one."""
+        for contact in self.contacts:
             contact.forget_iterate()
 
     def augment(self, x: np.ndarray, seats: np.ndarray) -> None:
-        """Press contacts harder where they have sunk in; collective."""
-        trial = self.surroundings.trial(x, seats)
+        """Augment the contacts that have penetrated; collective."""
+        trial = self.halo.trial(x, seats)
         for contact in self._augmented:
             contact.augment(trial)
-            self.share(contact.memory)
+            if contact.memory is not None:
+                self.share(contact.memory)
 
     def share_memories(self) -> None:
-        """Let all ranks know the memories, except what `augment` has shared already; collective."""
+        """Share the memories among all ranks, except what `augment` has shared already; collective."""
         for memory in self._kept:
             self.share(memory)
 
     def share(self, memory: Memory) -> None:
-        """Let all ranks know what each knows of a memory at its own stations; collective."""
+        """Share a memory: each rank gives the values at its own stations to all; collective."""
         if self.comm.size == 1:
             return
         for name, stations in memory.stations.items():

@@ -221,7 +221,7 @@ class Continuation:
             log.info("step %d: the spring left its path and %s", self.number + 1, free)
             self.negative_pivots = 0
             if self.step_error is not None:
-                self.step_error.rejoin()
+                self.step_error.restart()
             return outcome
         self.system.state.put_back(before)
         self.system.restore()

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from petsc4py import PETSc
 
-from coilset.model.body.body import OfElements
+from coilset.model.body.body import Body
 from coilset.model.equilibrium.aij import AijEntries
 from coilset.model.equilibrium.layout import Layout
 
@@ -22,28 +22,30 @@ class ElementEntries:
             cuts, for `join_patterns`.
     """
 
-    def __init__(self, body: OfElements, layout: Layout) -> None:
-        self._body, self._comm, self._places = body, layout.comm, np.empty(0)
-        self._at_cut, self.tables = np.zeros(len(body.element_dofs), dtype=bool), [body.element_dofs]
+    def __init__(self, body: Body, layout: Layout) -> None:
+        assert body.element_dofs is not None
+        self._body, self._comm, self._places, self._dofs = body, layout.comm, np.empty(0), body.element_dofs
+        self._at_cut, self.tables = np.zeros(len(self._dofs), dtype=bool), [self._dofs]
         if self._comm.size > 1:
-            self._at_cut = (body.element_dofs >= layout.owned).any(axis=1)
-            numbers = layout.index_map.local_to_global(body.element_dofs.ravel()).astype(PETSc.IntType)
-            self._numbers = numbers.reshape(body.element_dofs.shape)
+            self._at_cut = (self._dofs >= layout.owned).any(axis=1)
+            numbers = layout.index_map.local_to_global(self._dofs.ravel()).astype(PETSc.IntType)
+            self._numbers = numbers.reshape(self._dofs.shape)
             self.tables = [self._numbers, *self._comm.allgather(self._numbers[self._at_cut])]
 
     def find(self, entries: AijEntries) -> None:
         """Find the places in a matrix that has room for them."""
-        self._indptr, self._places = entries.own[0], find_places(*entries.own, self._body.element_dofs, self._at_cut)
+        self._indptr, self._places = entries.own[0], find_places(*entries.own, self._dofs, self._at_cut)
 
-    def add(self, mat: PETSc.Mat, values: np.ndarray) -> None:
+    def add(self, mat: PETSc.Mat, values: np.ndarray, share: float | None) -> None:
         """Add all tangents to the matrix whose places were found; collective.
 
         Args:
             mat: the matrix.
             values: its entries in this rank's own columns, the first of `AijEntries.arrays`.
+            share: as in `Body.element_tangents`.
         """
-        dofs, places, at_cut = self._body.element_dofs, self._places, self._at_cut
-        for cells, tangents in self._body.element_tangents():
+        dofs, places, at_cut = self._dofs, self._places, self._at_cut
+        for cells, tangents in self._body.element_tangents(share):
             add_elements(self._indptr, dofs[cells], places[cells], tangents, at_cut[cells], values)
             if self._comm.size > 1 and at_cut[cells].any():
                 numbers = self._numbers[cells][at_cut[cells]]

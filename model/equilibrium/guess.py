@@ -1,12 +1,12 @@
-"""Where a step starts: what the last steps on the path say about the next one.
+"""Where a step starts: an extrapolation of the last steps on the path.
 
-The mean rates of two steps, Δ₁/h₁ and Δ₂/h₂, stand in the middles of these; the straight line through both gives that
+The mean rates of two steps, Δ₁/h₁ and Δ₂/h₂, belong to the middles of these; the straight line through both gives that
 of a next step of length h, so that
 
     Δ = h (r₂ + (r₂ − r₁) (h + h₂)/(h₁ + h₂)),   r = Δ/h
 
 is wrong by terms of third order, h r₂ alone by terms of second order. Rotation vectors may be added so because those of
-neighbouring steps are nearly parallel. At a kink of the path, where the wire begins to yield or something touches, the
+neighbouring steps are nearly parallel. At a kink of the path, where the wire begins to yield or a contact closes, the
 rates differ more than they would along a smooth one, and r₂ alone is the better guess.
 """
 
@@ -50,8 +50,8 @@ class Guess:
     def of(self, load: Load, position: Position, size: float) -> PETSc.Vec | None:
         """The best guess for a step of a size; None if nothing is known; collective.
 
-        Where the error of a longer step was too large, its increments know what touches, those of the last steps what
-        does not yet: that with less force out of balance is taken.
+        Where the error of a longer step was too large, its increments include contacts that have just closed, and the
+        extrapolation does not: that with less force out of balance is taken.
         """
         if self.too_far is None:
             return self._along_path(position, size) if position.last else self._as_probed(load)

@@ -27,7 +27,7 @@ class Holding(NamedTuple):
     """What holds the ends of a spring.
 
     Attributes:
-        clamped: whether the end nodes belong to rigid heads; else they stand on seats.
+        clamped: whether the end nodes belong to rigid heads; else they are on seats.
         tips: on seats: whether the wire's tips are held sideways and against rotation, as in pockets; else contacts
             alone hold the wire.
         heads: held freedoms of the bottom and of the top head, without the axial ones.
@@ -185,7 +185,7 @@ class Heads:
     def torque(self) -> float:
         """What turns the spring about the top head's axis at the last equilibrium, N mm; collective.
 
-        Of a seat in whose groove the wire lies, the moment that is conjugate to its turn.
+        For a seat with a groove, the moment that is conjugate to its turn.
         """
         if not self.clamped and not len(self.tips["top"][1]):
             return float(self.reactions("equilibrium")[AXIAL + 3])

@@ -14,7 +14,6 @@ from coilset.model.base.compat import NOT_A_NUMBER
 from coilset.model.equilibrium import factors
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, imbalance
-from coilset.model.equilibrium.foreseeing import Foreseeing
 from coilset.model.equilibrium.line_search import WorkSearch
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
@@ -24,6 +23,8 @@ from coilset.model.equilibrium.snes import SnesFactory, solve
 from coilset.model.equilibrium.system import System
 
 each_iteration = logging.getLogger("coilset.iterations")  # silent unless its level is set
+
+CRAWL, CRAWLS = 0.01, 8  # part of a correction, and how many in a row
 
 
 class Iteration:
@@ -43,10 +44,11 @@ class Iteration:
     Attributes:
         snes: PETSc's solver.
         matrix: TangentMatrix.
-        load: what the step asks for.
+        load: what the step requires.
         load_factor: share of it whose equilibrium is sought.
         ratio: out-of-balance forces at the last iterate, as (6.3.1) measures them.
         factorisations: number of tangents since `start`.
+        predicted: whether a tangent of this attempt was built with predicted section forces, see Body.
     """
 
     # a step's load on an arc, and the forces where SNES's function is another one: made where a method needs them
@@ -68,9 +70,11 @@ class Iteration:
         self.F = system.layout.vector()
         self.matrix = TangentMatrix(system.body, system.layout)
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
-        self._foreseeing: Foreseeing | None = None
+        self._predicts, self.predicted = False, False
+        self._share: float | None = None  # of the predicted correction, if the next tangent is to be built with it
         self.ratio, self.factorisations, self._at_step_start = np.inf, 0, True
-        self._fitted = 0  # version of the matrix that the linear solvers were last told of; a solid's never changes
+        self._fitted = 0  # matrix version at the last reset of the linear solvers; a solid's never changes
+        self._crawled = 0  # corrections in a row of which less than CRAWL was made
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
         me = weakref.proxy(self)
         self._factory = SnesFactory(
@@ -96,18 +100,16 @@ class Iteration:
         if not method.own_test:
             self.snes.setConvergenceTest(lambda *args: me._judge(*args))
 
-    # ---- what a solve asks for -------------------------------------------------------------------------------------
+    # ---- what a solve requires -------------------------------------------------------------------------------------
 
-    def begin(self, load: Load, foreseeing: Foreseeing | None) -> None:
+    def begin(self, load: Load, predicts: bool) -> None:
         """An attempt begins.
 
         Args:
-            load: what the step asks for.
-            foreseeing: for tangents with foreseen forces; None: with the true ones only.
+            load: what the step requires.
+            predicts: whether tangents may be built with predicted section forces; else with the actual ones only.
         """
-        self.load, self._foreseeing = load, foreseeing
-        if foreseeing is not None:
-            foreseeing.begin()
+        self.load, self._predicts, self.predicted, self._share = load, predicts, False, None
 
     def start(self, guess: PETSc.Vec | None) -> int:
         """Set the increments from which to iterate; the number of iterations that it took; collective.
@@ -121,8 +123,9 @@ class Iteration:
         if guess is None or method.is_arc_length:
             X.set(0.0)
         elif method.searches:
-            if self._foreseeing is not None:
-                self._foreseeing.start(guess)
+            if self._predicts and not self.system.touches:  # a start is a correction of the last equilibrium
+                self.system.predict_from_equilibrium(guess.getArray(readonly=True))
+                self._share = 1.0
             self.limit.limit_start(guess, X)
         else:
             guess.copy(X)
@@ -144,8 +147,7 @@ class Iteration:
         """
         self.load_factor = load_factor
         solve(self.snes, self._arc_load if self.method.is_arc_length else None, self.system.increments)
-        if self._foreseeing is not None:
-            self._foreseeing.forget()
+        self._share = None
         return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
 
     @property
@@ -156,7 +158,7 @@ class Iteration:
     def negative_pivots(self) -> int | None:
         """Number of negative pivots of the last factors L U; None where they are not shown or not of the last solve."""
         pc = self.snes.getKSP().getPC()
-        if not self.method.searches or not self.factorisations:  # a state that is in equilibrium asks for no factors
+        if not self.method.searches or not self.factorisations:  # a state that is in equilibrium needs no factors
             return None
         return factors.negative_pivots(pc)
 
@@ -185,8 +187,9 @@ class Iteration:
 
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         self.factorisations += 1
-        (self._foreseeing or self.system).tangent(X, self.load, self.matrix, self._at_step_start)
-        self._at_step_start = False
+        self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._share)
+        self.predicted |= self._share is not None
+        self._at_step_start, self._share = False, None
         self.prepare(P)
         if self.matrix.version != self._fitted:  # PETSc may take the new matrix for one with the old pattern
             self._fitted = self.matrix.version
@@ -202,10 +205,11 @@ class Iteration:
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
-        step = self.search(x, y, self.F, self.load, self.load_factor, self._foreseeing)
+        step = self.search(x, y, self.F, self.load, self.load_factor, self._predicts)
         self._step_length = step.contact_limit * step.value
-        if self._foreseeing is not None:
-            self._foreseeing.correct(self._step_length, step.only_spurious)
+        always = bool(self.control.predicted_forces)
+        use = self._predicts and (step.only_spurious or always or not self.system.touches)
+        self._share = self._step_length if use else None
         for factor in (step.contact_limit, step.value):
             if factor != 1.0:
                 y.scale(factor)
@@ -218,8 +222,8 @@ class Iteration:
         """SNES's convergence test."""
         norm, X = norms[2], self.system.increments
         if iteration == 0:
-            self._step_length = None
-            self.test.begin(norm, 0.0 if self._foreseeing is None else self._foreseeing.axial_force)
+            self._step_length, self._crawled = None, 0
+            self.test.begin(norm, self.system.body.axial_force if self._predicts else 0.0)
         if not math.isfinite(norm):
             return NOT_A_NUMBER
         if self.method.is_arc_length and iteration == 0:
@@ -237,8 +241,21 @@ class Iteration:
             return Reason.CONVERGED_FNORM_RELATIVE
         if iteration >= snes.getTolerances()[3]:
             return Reason.DIVERGED_MAX_IT
-        lost = None if self.method.is_arc_length else self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
+        if self.method.is_arc_length:
+            return Reason.ITERATING
+        lost = self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
+        if lost is None and self._crawls():
+            lost = Reason.DIVERGED_TR_DELTA
         return Reason.ITERATING if lost is None else lost
+
+    def _crawls(self) -> bool:
+        """Whether hardly anything of the last corrections was made: repeated however often, they lead nowhere.
+
+        Where stiff contacts follow a weak mode round a curve, the search leaves some ten thousandths of each one.
+        """
+        short = self._step_length is not None and self._step_length < CRAWL
+        self._crawled = self._crawled + 1 if short else 0
+        return self._crawled >= CRAWLS
 
     def _tell(self, iteration: int, norm: float) -> None:
         if not each_iteration.isEnabledFor(logging.DEBUG):

@@ -64,7 +64,7 @@ class LineLayout(Layout):
 
     Attributes:
         station_dofs: of the stations' displacements and rotations, shape (stations, 6).
-        element_dofs: of the elements' own shear angles, shape (elements, 2).
+        element_dofs: of the elements' own unknowns, shape (elements, own).
         seat_dofs: of the seats, shape (12,).
         rod: the Rod whose unknowns they are.
         own_stations: numbers of this rank's stations, in the order of the local nodes.
@@ -89,10 +89,10 @@ class LineLayout(Layout):
         self.contact_dofs = np.concatenate(
             [self.station_dofs[:, :3].ravel(), self.seat_dofs, self.station_dofs[:, 3:].ravel()]
         )
-        shear = index_map.local_to_global(rod.numbering.shear.ravel().astype(np.int32)).reshape(-1, 2)
+        own = index_map.local_to_global(rod.numbering.own.ravel().astype(np.int32)).reshape(rod.numbering.own.shape)
         element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
-        self.element_dofs = np.empty((len(element), 2), dtype=PETSc.IntType)
-        self.element_dofs[element] = np.concatenate(comm.allgather(shear))
+        self.element_dofs = np.empty((len(element), rod.element.own), dtype=PETSc.IntType)
+        self.element_dofs[element] = np.concatenate(comm.allgather(own))
 
     @property
     def _all_dofs(self) -> np.ndarray:

@@ -18,7 +18,6 @@ from numba import njit
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.contact_limit import ContactLimit
-from coilset.model.equilibrium.foreseeing import Foreseeing
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
@@ -57,20 +56,20 @@ class WorkSearch:
         self._trial = system.layout.vector()
 
     def __call__(
-        self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float, foreseeing: Foreseeing | None
+        self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float, predicts: bool
     ) -> StepLength:
         """Step length from `x` along −y, with the residual `F` at x; the three are not changed; collective.
 
         Args:
             x, y, F: increments, correction and residual.
             load, load_factor: the fraction of a load that is sought.
-            foreseeing: predicts the forces after the whole correction; None: they are not foreseen.
+            predicts: whether the body predicts its section forces after the correction.
         """
         system, control = self.system, self.control
-        self._x, self._load, self._load_factor, self._foreseeing = x, load, load_factor, foreseeing
+        self._x, self._load, self._load_factor, self._predicts = x, load, load_factor, predicts
         system.evaluate(x)
-        if foreseeing is not None:
-            foreseeing.predict(y)
+        if predicts:
+            system.predict(-y.getArray(readonly=True))
         allowed = self.limit.allowed(system.max_penetration)
         pending = load.misses(x.getArray(readonly=True), load_factor)
         y.copy(self._direction)
@@ -103,9 +102,9 @@ class WorkSearch:
 
         In a slender rod these grow over a correction that is nevertheless right; the next one removes them.
         """
-        if self._foreseeing is None:
+        if not self._predicts:
             return np.inf, np.inf
-        self._foreseeing.residual_without_second_order(self._load, self._load_factor, limit * length, self._force)
+        self.system.first_order_residual(self._load, self._load_factor, limit * length, self._force)
         return self._work_and_norm()
 
     def _at(self, length: float) -> tuple[float | None, float]:

@@ -9,7 +9,6 @@ from numba import njit
 
 from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.extremes import largest
-from coilset.model.body.state import Field
 from coilset.model.equilibrium.layout import Layout
 
 
@@ -71,18 +70,24 @@ class Load:
         return load_factor * self.forces + (1.0 - load_factor) * reactions[self.loaded]
 
     def out_of_balance(
-        self, load_factor: float, reactions: Field, increments: np.ndarray, weight: float, F: np.ndarray
+        self,
+        load_factor: float,
+        internal: np.ndarray,
+        reactions: np.ndarray,
+        increments: np.ndarray,
+        weight: float,
+        F: np.ndarray,
     ) -> None:
-        """Write into F the reactions less the forces of a fraction of the step, and what `miss` does.
+        """Write into F the internal forces less those of a fraction of the step, and what `miss` does.
 
         Args:
-            load_factor: as in `forces_at`.
-            reactions: the internal forces, those of the last equilibrium among them.
+            load_factor, reactions: as in `forces_at`.
+            internal: internal forces, this rank's part, N and N mm.
             increments, weight: as in `miss`.
         """
         _out_of_balance(
-            reactions.trial,
-            reactions.equilibrium,
+            internal,
+            reactions,
             self.loaded,
             self.forces,
             self.held,

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.body.body import Body, FillsMatrix, OfElements
+from coilset.model.body.body import Body
 from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.aij import AijEntries
 from coilset.model.equilibrium.element_entries import ElementEntries, set_rows
@@ -39,33 +39,32 @@ class TangentMatrix:
         self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, while there are some
         self._entries: AijEntries | None = None
         self._unknowns, self._stop = np.empty(0, PETSc.IntType), 0  # of contacts, in the entries' numbers, all below
-        self._elements = ElementEntries(body, layout) if isinstance(body, OfElements) else None
+        self._elements = None if body.element_dofs is None else ElementEntries(body, layout)
 
-    def fill(self, contributions: Sequence[Contribution], exactly: bool = False) -> None:
+    def fill(self, contributions: Sequence[Contribution], exactly: bool = False, share: float | None = None) -> None:
         """Set it to the body's tangent and the stiffness of contacts; collective.
 
         Args:
             contributions: of the contacts; the matrix gets room for those that are closed.
             exactly: whether it is to have room for no others.
+            share: as in `Body.element_tangents`.
         """
         self._clear(contributions, exactly)
         if self._elements is not None:
             assert self._entries is not None
             own, _ = self._entries.arrays()
-            self._elements.add(self.mat, own)
+            self._elements.add(self.mat, own, share)
             self._add_contacts(contributions)
             return
-        assert isinstance(self.body, FillsMatrix)
         self.body.tangent(self.mat)
         self.mat.assemble()
 
     def hold(self, held: np.ndarray) -> None:
         """Set the rows of prescribed increments, given by their places on this rank; collective.
 
-        See FillsMatrix and OfElements.
+        See Body.
         """
         if self._entries is None:
-            assert isinstance(self.body, FillsMatrix)
             self.body.hold(self.mat, held + self.layout.start)
             return
         own, others = self._entries.arrays()

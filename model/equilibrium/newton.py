@@ -13,7 +13,6 @@ from petsc4py import PETSc
 
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.convergence import Outcome, Reason, reason_in_words
-from coilset.model.equilibrium.foreseeing import Foreseeing
 from coilset.model.equilibrium.iteration import Iteration
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.methods import Method
@@ -43,16 +42,16 @@ class Newton:
         tolerance: ε of (6.3.1).
         control: NewtonControl.
         limit: ContactLimit; None: corrections are not limited.
-        augmentation_tolerance: maximum penetration, mm, that is let be; a greater one is worked off by augmented
-            Lagrange: contacts are pressed harder by what they have sunk in, and the step is solved on.
-        augmented: maximum penetration, mm, that is worked off; a state with a deeper one is left as it is.
+        augmentation_tolerance: tolerance of the augmented Lagrangian loop, mm: contacts that have penetrated
+            deeper are pressed harder by as much, and the step is solved again.
+        augmented: maximum penetration, mm, that the loop reduces; a state with a deeper one is left as it is.
         prepare: called with PETSc's matrix after each tangent, for preconditioners that are not PETSc's.
 
     Raises:
         InputError: if PETSc refuses an option.
 
     Attributes:
-        foreseeing: Foreseeing; None where the body does not foresee, or the control says so.
+        predicts: whether tangents may be built with section forces that a correction predicts, see Body.
         iteration: Iteration.
     """
 
@@ -70,32 +69,31 @@ class Newton:
         self.system, self.control = system, control or NewtonControl()
         self.augmentation_tolerance, self.augmented = augmentation_tolerance, augmented
         self.limit = limit or ContactLimit(system, self.control, np.inf)
-        self.foreseeing = Foreseeing.of(system, self.control.foreseen_forces)
+        self.predicts = system.body.predicts and self.control.predicted_forces is not False
         self.iteration = Iteration(system, method, tolerance, self.control, self.limit, prepare)
 
     def solve(self, load: Load, start: Start | None = None) -> Outcome:
-        """As `_attempt`; where tangents with foreseen forces fail, once more with the true ones; collective.
+        """As `_attempt`; where tangents with predicted section forces fail, again with the actual ones; collective.
 
-        What fails where something touches has had the true ones nearly all the way, and fails again.
+        What fails with closed contacts has had the actual ones nearly all the way, and fails again.
         """
-        foreseeing = self.foreseeing
-        outcome = self._attempt(load, start, foreseeing)
-        if outcome.converged or foreseeing is None or not foreseeing.used or self.system.touches:
+        outcome = self._attempt(load, start, self.predicts)
+        if outcome.converged or not self.iteration.predicted or self.system.touches:
             return outcome
-        return outcome + self._attempt(load, start, None)
+        return outcome + self._attempt(load, start, False)
 
-    def _attempt(self, load: Load, start: Start | None, foreseeing: Foreseeing | None) -> Outcome:
+    def _attempt(self, load: Load, start: Start | None, predicts: bool) -> Outcome:
         """Solve one step; the system is left at the last iterate; collective.
 
         Args:
-            load: what the step asks for.
+            load: what the step requires.
             start: where to start; from the last equilibrium if None.
-            foreseeing: for tangents with foreseen forces; None: with the true ones only.
+            predicts: as in `Iteration.begin`.
 
         Returns:
             Outcome; its counts are those of all solves where contacts are augmented.
         """
-        self.iteration.begin(load, foreseeing)
+        self.iteration.begin(load, predicts)
         self.system.reset_contacts()
         outcome, depths = self._solve(start or Start()), list[float]()
         while outcome.converged and self.augmentation_tolerance < self.system.max_penetration <= self.augmented:
@@ -103,7 +101,7 @@ class Newton:
             if self._in_vain(depths):
                 reason = (
                     f"a penetration of {depths[-1]:.3g} mm is left after {len(depths) - 1} augmentations, "
-                    "as where the wire lies solid on itself"
+                    "so the spring is probably solid"
                 )
                 return replace(outcome, converged=False, reason=reason)
             self.system.augment()
@@ -111,9 +109,9 @@ class Newton:
         return outcome
 
     def _in_vain(self, depths: Sequence[float]) -> bool:
-        """Whether contacts are augmented no more: by penetrations before each augmentation, the last one's included.
+        """Whether to stop augmenting, from the penetrations before each augmentation, the last one's included.
 
-        Where bodies lie solid on each other they do not become less any more.
+        Where bodies are solid on each other they do not decrease any more.
         """
         few, made = FEW_AUGMENTATIONS, len(depths) - 1
         return made >= self.control.augmentations or (made >= few and depths[-1] > LESS * depths[-1 - few])
@@ -134,14 +132,15 @@ class Newton:
             evaluations=system.evaluations - evaluations,
             linear_iterations=start.linear_iterations + linear,
             failed_solves=failed,
-            stagnated=reason == Reason.DIVERGED_LOCAL_MIN,
+            stagnated=reason in (Reason.DIVERGED_LOCAL_MIN, Reason.DIVERGED_TR_DELTA),
         )
 
     def _in_parts(self) -> tuple[int, int, int]:
         """Solve the step whole, or balance it roughly on the way where contacts stop it.
 
         Where no contact, a part would fail just as the whole: the step is to be cut. So it is where the law finds
-        no stress, and `touches` is therefore False: a part leads to the same increments, for which there is none.
+        no stress, and `touches` is therefore False: a part leads to the same increments, for which there is none. Where
+        the iteration crawls, it does so in a part, too.
 
         Returns:
             Numbers of iterations, of linear ones in them, and of parts that failed.
@@ -158,7 +157,8 @@ class Newton:
                 good, reached, aim = X.copy(), aim, 1.0
             else:
                 part = 0.5 * (aim - reached)
-                if part < self.control.smallest_part or not self.system.touches:
+                crawls = iteration.reason == Reason.DIVERGED_TR_DELTA
+                if part < self.control.smallest_part or crawls or not self.system.touches:
                     return iterations, linear, failed
                 failed += 1
                 X.set(0.0) if good is None else good.copy(X)

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from coilset.model.base.errors import SolveError
-from coilset.model.body.body import Moment, PassesTime
+from coilset.model.body.body import Moment
 from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
@@ -51,7 +51,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class ProgramPosition:
-    """Where in the program the spring stands.
+    """Position in the load program.
 
     Attributes:
         stage: number of the stage.
@@ -103,7 +103,7 @@ class LoadProgram:
         self.begin(0)
 
     def begin(self, number: int) -> None:
-        """Stand at the start of a stage."""
+        """Begin a stage at the last equilibrium."""
         self.redirected: Stage | None = None
         self.number, self._height, self._force = number, self.control.height, self.control.force
         self._heads = (*self.control.freedoms("equilibrium"), *self.control.reactions("equilibrium"))
@@ -113,12 +113,11 @@ class LoadProgram:
     @property
     def now(self) -> Moment:
         """Time and temperature at the last equilibrium."""
-        body = self.control.system.body
-        return Moment(*(float(value) for value in body.clock[:2])) if isinstance(body, PassesTime) else START
+        return Moment(*(float(value) for value in self.control.system.body.clock[:2]))
 
     @property
     def position(self) -> ProgramPosition:
-        """Where the spring stands."""
+        """Position in the load program."""
         return ProgramPosition(
             self.number,
             self._height,

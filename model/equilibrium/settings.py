@@ -41,7 +41,7 @@ class NewtonControl:
         penetration_growth: factor by which one correction may increase a penetration that is deeper than that.
         smallest_contact_step: share of a correction that is made whatever it does to the contacts.
         contact_bisections: number of bisections to find the share of a correction that the contacts allow.
-        foreseen_forces: whether the stiffness of rotating rods is built with the forces that the last correction
+        predicted_forces: whether the stiffness of rotating rods is built with the forces that the last correction
             predicts; left out: where no contact, and after corrections that increase only spurious forces.
     """
 
@@ -61,7 +61,7 @@ class NewtonControl:
     penetration_growth: Growth = 1.5
     smallest_contact_step: Fraction = 0.02
     contact_bisections: Count = 6
-    foreseen_forces: Annotated[bool | None, Field(strict=True)] = None
+    predicted_forces: Annotated[bool | None, Field(strict=True)] = None
 
 
 @dataclass(frozen=True)

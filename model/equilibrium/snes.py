@@ -44,7 +44,7 @@ class SnesFactory:
         forget(keys)  # of the one before: it had options that this one leaves to PETSc
         for key, value in settings.items():
             database[self.prefix + part + key] = value
-            if key not in of_the_user:  # those stay, so that PETSc names those at its end which it did not know
+            if key not in of_the_user:  # those stay, so that PETSc reports at its end which it has not used
                 keys.add(self.prefix + part + key)
         snes = PETSc.SNES().create(self.comm)
         snes.setOptionsPrefix(self.prefix + part)

@@ -12,7 +12,7 @@ from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.settings import StepControl
 
-ON_MARK = 1e-9  # of a regular step: what is nearer to a mark stands on it
+ON_MARK = 1e-9  # of a regular step: what is nearer to a mark is on it
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Path:
         target: in words, for logs and errors.
         automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
             also after a cut.
-        place: where on it the body stands, in words.
+        place: where on it the body is, in words.
         moment: time and temperature at a place on the path; None where no time passes.
         length: of the path up to a place that is counted in regular steps, in their mean length; None: they are equal.
     """
@@ -39,7 +39,7 @@ class Path:
     moment: Callable[[float], Moment] | None = None
 
     def step_length(self, done: float, size: float) -> float:
-        """Of a step of a size from a place on the path, both in regular steps; in their mean length."""
+        """Length of a step of a size from a place on the path, both in regular steps; in their mean length."""
         return size if self.length is None else self.length(done + size) - self.length(done)
 
     def progress(self, done: float) -> float:
@@ -49,7 +49,7 @@ class Path:
 
 @dataclass(frozen=True)
 class Position:
-    """Where on its path the continuation stands.
+    """Position of the continuation on its path.
 
     Attributes:
         done: what is behind, in regular steps.

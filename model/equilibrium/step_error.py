@@ -1,6 +1,6 @@
 """What the length of the steps leaves wrong: an estimate after each step, and the size that the next one may have.
 
-A body that EstimatesErrors gives the work ΔW of the error of its inner forces on the step's deformation. By the
+A body that estimates errors gives the work ΔW of the error of its inner forces on the step's deformation. By the
 principle of virtual work, with the step's own increments instead of the deformation that a small travel makes, the
 driven head's force is wrong by
 
@@ -20,7 +20,6 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from coilset.model.body.body import EstimatesErrors
 from coilset.model.body.state import Where
 from coilset.model.equilibrium.heads import Heads
 from coilset.model.equilibrium.settings import StepControl
@@ -55,16 +54,14 @@ class StepError:
     """Estimates for a spring between its heads.
 
     Args:
-        control: Heads of a System whose body EstimatesErrors.
-        accuracy: error of force that is asked for, over the maximum force so far.
+        control: Heads of a System whose body estimates errors, see Body.
+        accuracy: required error of force, over the maximum force so far.
         steps: StepControl.
     """
 
     def __init__(self, control: Heads, accuracy: float, steps: StepControl) -> None:
-        body = control.system.body
-        assert isinstance(body, EstimatesErrors)
-        self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, body
-        body.estimate_errors()
+        self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, control.system.body
+        self._body.estimate_errors()
         self._memory = control.system.state.add("step_error", np.zeros(3), Where.SHARED)
 
     def estimate(self, ratio: float, controls: bool) -> Estimate:
@@ -73,13 +70,13 @@ class StepError:
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
             controls: whether the step size is controlled by it. A kink then counts as in the middle of the step. In
-                equal steps it lies anywhere, and the errors of many steps would not add up as those of the worst case.
+                equal steps it is anywhere, and the errors of many steps would not add up as those of the worst case.
         """
         control, comm = self.control, self.control.system.comm
         memory, last = self._memory.trial, self._memory.equilibrium
         memory[CLOSED] = control.system.last.closed
         kinked = controls and memory[CLOSED] != last[CLOSED]
-        works = self._body.error_works(ratio, bool(kinked), stands=not controls)
+        works = self._body.error_works(ratio, bool(kinked), final=not controls)
         if comm.size > 1:
             works = tuple(comm.allreduce(np.array(works)).tolist())
         (start, before), (end, force) = control.measured("equilibrium"), control.measured("trial")
@@ -101,7 +98,7 @@ class StepError:
 
         Args:
             new: at its height, N.
-            works: of EstimatesErrors.
+            works: of `Body.error_works`.
             first: travel of the first step of all, mm; greatest: maximum force so far, N.
         """
         left, before = works[2] / first, (works[3] - works[2]) / first
@@ -125,15 +122,15 @@ class StepError:
         return Estimate(told, math.nan, share, self._factor(share))
 
     def _resolves_time(self, faint: float) -> bool:
-        """Can the error of the step be told from its works? Forces up to `faint`, N, do not fall; collective."""
+        """Does the error of the step follow from its works? Forces up to `faint`, N, do not fall; collective."""
         comm = self.control.system.comm
         before, after = (max(abs(self.control.measured(when)[1]), faint) for when in ("equilibrium", "trial"))
         resolves = self._body.resolves_time(max(math.log(before / after), 0.0))
         return comm.allreduce(resolves, MPI.LAND) if comm.size > 1 else resolves
 
-    def rejoin(self) -> None:
+    def restart(self) -> None:
         """Go on from the last equilibrium, which was reached by steps that were not judged."""
-        self._body.rejoin_finer_path()
+        self._body.restart_estimate()
 
     def _factor(self, share: float) -> float:
         steps = self.steps

@@ -1,17 +1,17 @@
-"""Residual and tangent of a body and what touches it, as functions of one vector of increments."""
+"""Residual and tangent of a body and its contacts, as functions of one vector of increments."""
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
 from dolfinx import la
 from petsc4py import PETSc
 
-from coilset.model.body.body import Body, HasRotations, Moment, PassesTime
+from coilset.model.body.body import Body, Moment
 from coilset.model.body.lever import Swing
 from coilset.model.body.state import Where
-from coilset.model.contact.base import SEAT_DOFS, BearsOnWire, Contact, Contribution, HasMemory
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution
 from coilset.model.equilibrium.contact_parts import ContactParts, carried
 from coilset.model.equilibrium.joined import add_vectors
 from coilset.model.equilibrium.layout import Layout, LineLayout
@@ -56,7 +56,6 @@ class System:
             step before it, and the internal forces `reactions` beside the body's fields.
         increments: PETSc's vector of the increments on trial, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
-        bearing: does each of the contacts bear on the wire (BearsOnWire)?
         touching: ContactParts, if there are contacts.
         last: Evaluation.
         evaluations: number of states that were evaluated so far.
@@ -67,7 +66,7 @@ class System:
     ) -> None:
         self.body, self.layout, self.comm, self.contacts = body, layout, layout.comm, list(contacts)
         self.state = body.state
-        self.memories = [contact.memory for contact in self.contacts if isinstance(contact, HasMemory)]
+        self.memories = [contact.memory for contact in self.contacts if contact.memory is not None]
         self._seats = None if seats is None else self.state.add("seats", np.array(seats, float), Where.SHARED)
         for number, memory in enumerate(self.memories):
             self.state.include(f"contact_{number}_", memory.state)
@@ -77,17 +76,12 @@ class System:
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
         self._body_increments = body.increment.x.array
-        # asked once, for the test of a protocol takes longer than what it guards
-        self._rotating = body if isinstance(body, HasRotations) else None
-        self.bearing = [isinstance(contact, BearsOnWire) for contact in self.contacts]
         if self.contacts:
             self.touching = ContactParts(self.line, self.contacts)
         self._arms = layout.rod.arms if isinstance(layout, LineLayout) else {}
         self._swings: dict[int, Swing] = {}
         self._is_rotation = np.zeros(layout.size_local, dtype=bool)
-        if self._rotating is not None:
-            body = self._rotating
-            self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
+        self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
         self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
         self._evaluated = EXPIRED
 
@@ -101,7 +95,7 @@ class System:
     @property
     def seats(self) -> np.ndarray:
         """x, y, z and rotations of both seats on trial, shape (12,), mm and rad."""
-        assert self._seats is not None, "this body stands on no seats"
+        assert self._seats is not None, "this body has no seats"
         return self._seats.trial
 
     @property
@@ -143,7 +137,8 @@ class System:
         else:
             self.last = Evaluation(values, True, *self._touch())
         if has_stress:
-            self._assemble_internal(self.body.internal_forces)
+            self._assemble(self.body.internal_forces, self._reactions.trial)
+            self.internal.stateIncrease()  # its entries have changed behind PETSc's back
 
     def _follow_heads(self) -> None:
         """The pose of heads to which stations are fixed, and how these go with them; collective."""
@@ -172,9 +167,8 @@ class System:
             rotations = self._body_increments[self.line.rod.rotation_dofs]
         return self.touching.evaluate(self.state["x"].trial, self.seats, rotations)
 
-    def _assemble_internal(self, add: Callable[[np.ndarray], None]) -> None:
-        """Into `internal`, with the body's forces that `add` adds to this rank's unknowns and the ghosts'."""
-        values = self._reactions.trial
+    def _assemble(self, add: Callable[[np.ndarray], None], values: np.ndarray) -> None:
+        """Write this rank's internal forces: what `add` adds to its unknowns and the ghosts', and those of contacts."""
         values[:] = 0.0
         if self.comm.size == 1:
             add(values)
@@ -187,7 +181,6 @@ class System:
         for part in self.acting if self._arms else self.last.contributions:
             if len(part.dofs):
                 add_vectors(self.line.contact_dofs, part.dofs, part.forces, self.layout.start, values)
-        self.internal.stateIncrease()  # its entries have changed behind PETSc's back
 
     def with_ghosts(self, values: np.ndarray) -> np.ndarray:
         """The body's unknowns of this rank's part `values` of a vector, and after them the ghosts'; collective.
@@ -208,8 +201,7 @@ class System:
         self.expire()
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
-        """Let the step that begins take time; see PassesTime."""
-        assert isinstance(self.body, PassesTime), "this body knows no time"
+        """Let the step that begins take time; see Body."""
         self.body.pass_time(middle, end)
         self.expire()
 
@@ -220,7 +212,7 @@ class System:
 
     @property
     def touches(self) -> bool:
-        """Does any contact bear at the last evaluation, on any rank?"""
+        """Is any contact closed at the last evaluation, on any rank?"""
         return self.last.closed > 0
 
     def gathered_contacts(self) -> list[Contribution]:
@@ -231,7 +223,7 @@ class System:
 
     def commit(self) -> None:
         """Make the trial state the equilibrium."""
-        self.body.follow()
+        self.body.advance()
         if self.contacts:
             self.touching.share_memories()
         self.state.commit()
@@ -245,19 +237,19 @@ class System:
         self.expire()
 
     def reset_contacts(self) -> None:
-        """Let contacts remember the last equilibrium and nothing of what was tried since."""
+        """Restore the contacts' memories to the last equilibrium."""
         for memory in self.memories:
             memory.state.restore()
         self.forget_iterate()
 
     def forget_iterate(self) -> None:
-        """The next state is not that to which the last correction leads."""
+        """Forget what contacts foresee for the last correction; the next state is another one."""
         if self.contacts:
             self.touching.forget_iterate()
         self.expire()
 
     def augment(self) -> None:
-        """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
+        """Augment the contacts that have penetrated (augmented Lagrange), from now on; collective."""
         if self.contacts:
             self.touching.augment(self.state["x"].trial, self.seats)
         self.expire()
@@ -273,30 +265,15 @@ class System:
         if not self.evaluate(increments):
             F.set(np.inf)
             return
-        self._out_of_balance(load, load_factor, F)
+        self._out_of_balance(self._reactions.trial, load, load_factor, F)
 
-    def residual_with(
-        self, add_forces: Callable[[np.ndarray], None], load: Load, load_factor: float, F: PETSc.Vec
-    ) -> None:
-        """As `residual` at the last evaluation, with other forces than the body's `internal_forces`; collective.
-
-        Args:
-            add_forces: adds them to this rank's unknowns and the ghosts'.
-            load, load_factor, F: as in `residual`.
-        """
-        internal = self._reactions.trial.copy()
-        self._assemble_internal(add_forces)
-        self._out_of_balance(load, load_factor, F)
-        self._reactions.trial[:] = internal
-        self.internal.stateIncrease()
-
-    def _out_of_balance(self, load: Load, load_factor: float, F: PETSc.Vec) -> None:
+    def _out_of_balance(self, internal: np.ndarray, load: Load, load_factor: float, F: PETSc.Vec) -> None:
         values, x, weight = F.getArray(), self.last.increments, self.body.constraint_weight
-        moments = self._rotating is not None and len(load.loaded) > 0 and self._is_rotation[load.loaded].any()
+        moments = len(load.loaded) > 0 and self._is_rotation[load.loaded].any()
         if moments:
-            np.subtract(self._reactions.trial, self._forces_in_charts(load, load_factor), out=values)
+            np.subtract(internal, self._forces_in_charts(load, load_factor), out=values)
         else:
-            load.out_of_balance(load_factor, self._reactions, x, weight, values)
+            load.out_of_balance(load_factor, internal, self._reactions.equilibrium, x, weight, values)
         if load.drag is not None:
             values += load.drag.forces(x)
         if moments or load.drag is not None:
@@ -304,28 +281,60 @@ class System:
 
     def _forces_in_charts(self, load: Load, load_factor: float) -> np.ndarray:
         """Forces on all of this rank's unknowns, moments of the fixed frame as the nodes' charts have them."""
-        assert self._rotating is not None
         forces = np.zeros(self.layout.size_local)
         forces[load.loaded] = load.forces_at(load_factor, self._reactions.equilibrium)
-        self._rotating.to_charts(forces)
+        self.body.to_charts(forces)
         return forces
 
-    def tangent(self, increments: PETSc.Vec, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
+    def tangent(
+        self,
+        increments: PETSc.Vec,
+        load: Load,
+        matrix: TangentMatrix,
+        at_step_start: bool = False,
+        share: float | None = None,
+    ) -> None:
         """Derivative of the residual into `matrix`; collective.
 
         Args:
             increments, load: as in `residual`.
             matrix: written.
             at_step_start: begin with a matrix that has places for the contacts as they are now only.
+            share: build it with the section forces predicted after this share of the correction, see `predict`.
         """
         self.evaluate(increments)
-        self.last_tangent(load, matrix, at_step_start)
+        self.last_tangent(load, matrix, at_step_start, share)
 
-    def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
-        """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""
+    def last_tangent(
+        self, load: Load, matrix: TangentMatrix, at_step_start: bool = False, share: float | None = None
+    ) -> None:
+        """Assemble `tangent` with the moduli of the last evaluation, at the present trial state; collective."""
         if self.contacts:
             self.touching.iterate()
-        matrix.fill(self.acting if self._arms else self.last.contributions, at_step_start)
+        matrix.fill(self.acting if self._arms else self.last.contributions, at_step_start, share)
         if load.drag is not None:
             matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)
         matrix.hold(load.held)
+
+    # ---- mixed integration point (MIP) iteration -------------------------------------------------------------------
+
+    def predict(self, correction: np.ndarray) -> None:
+        """Let the body predict its section forces after a correction of the last evaluation, this rank's part."""
+        local = self._local
+        local.array[: self.layout.owned] = correction[: self.layout.owned]
+        if self.comm.size > 1:
+            local.scatter_forward()
+        self.body.predict(local.array)
+
+    def predict_from_equilibrium(self, correction: np.ndarray) -> None:
+        """As `predict`, from the last equilibrium; collective."""
+        self.expire_at_equilibrium()
+        if not self.body.recall():
+            self.evaluate(self.layout.vector())
+        self.predict(correction)
+
+    def first_order_residual(self, load: Load, load_factor: float, share: float, F: PETSc.Vec) -> None:
+        """As `residual` at the last evaluation, with the body's `first_order_forces`; collective."""
+        internal = np.empty(self.layout.size_local)
+        self._assemble(partial(self.body.first_order_forces, share=share), internal)
+        self._out_of_balance(internal, load, load_factor, F)

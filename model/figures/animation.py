@@ -10,7 +10,7 @@ from coilset.model.base.errors import CoilsetError
 from coilset.model.base.style import DIVERGING, QUARTERED, round_end
 from coilset.model.figures.display import ensure
 from coilset.model.figures.scene import ABOVE
-from coilset.model.figures.wire import closed, moments, tubes
+from coilset.model.figures.wire import closed, frames, tubes
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.opened import Run
 
@@ -34,7 +34,7 @@ def animate(run: Run) -> Path:
     """
     if not ensure():
         raise CoilsetError(f"{NAME} is not drawn: there is no display and no Xvfb")
-    shown = moments(run, MOST)
+    shown = frames(run, MOST)
     places, stress = closed(*tubes(run, shown, int(RINGS * np.ptp(run.data["turn"].values)) + 1))
     pictures = [Image.fromarray(one) for one in _draw(shown.labels, places, stress)]
     path = run.folder / NAME

@@ -1,4 +1,4 @@
-"""Values at the points of a section, carried to as many places as a picture needs."""
+"""Values at the points of a section, interpolated to the places of a picture."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ class FilledSection:
         points: of the section, in wire radii, shape (n, 2).
 
     Attributes:
-        places: those of the picture, in wire radii, shape (m, 2); the last `ROUND` lie on the surface.
+        places: those of the picture, in wire radii, shape (m, 2); the last `ROUND` are on the surface.
     """
 
     def __init__(self, points: np.ndarray) -> None:

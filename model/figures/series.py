@@ -7,7 +7,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 
-from coilset.model.figures.wire import moments, section_points, tubes
+from coilset.model.figures.wire import frames, section_points, tubes
 from coilset.model.results.files.folder import make, whole
 from coilset.model.results.files.opened import Run
 
@@ -34,7 +34,7 @@ def write_series(run: Run) -> list[Path]:
 
 def _lines(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
     """The stations, with the greatest shear on the surface of each element."""
-    shown, n = moments(run), run.data.sizes["station"] - 1
+    shown, n = frames(run), run.data.sizes["station"] - 1
     cells = [("line", np.stack([np.arange(n), np.arange(1, n + 1)], axis=1))]
     for time, x, shear in zip(_times(run), shown.x, shown.shear, strict=True):
         data = {"surface_shear_max_MPa": [np.abs(shear).max(axis=1).astype(float)]}
@@ -43,7 +43,7 @@ def _lines(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
 
 def _wires(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
     """A closed surface: quadrilaterals around the wire and triangles over its tips."""
-    shown = moments(run)
+    shown = frames(run)
     rings = PER_ELEMENT * (run.data.sizes["station"] - 1) + 1
     places, stress = tubes(run, shown, rings)
     around = places.shape[2] - 1

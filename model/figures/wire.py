@@ -7,44 +7,43 @@ from scipy.interpolate import CubicSpline
 
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
+from coilset.model.rod.elements import THESIS
 from coilset.model.section.surface import Inside
-
-GAUSS = 0.5 / np.sqrt(3.0)  # from the middle of an element to its sections, over its length
 
 
 def inside(run: Run) -> Inside:
-    """Where the inside of the coil is on the surface."""
+    """Position of the inside of the coil on the surface."""
     return Inside.of(bool(run.data["curvature"].values.any()), hand(run))
 
 
 def hand(run: Run) -> int:
-    """+1 of a right-handed coil, −1 of a left-handed one, by its wire: the file of a measured one does not say it."""
+    """+1 of a right-handed coil, −1 of a left-handed one, by its wire, as a measured one has no such entry."""
     x, y = run.data["position"].values[0, :, :2].T
-    return 1 if np.sum(x[:-1] * y[1:] - y[:-1] * x[1:]) > 0.0 else -1  # twice the area that the radius passes over
+    return 1 if np.sum(x[:-1] * y[1:] - y[:-1] * x[1:]) > 0.0 else -1  # twice the area swept by the radius
 
 
 def shear_around(run: Run) -> np.ndarray:
     """Shear stress about the wire's axis on its surface, positive as in a compressed spring, MPa.
 
     Returns:
-        Shape (snapshots, elements, 2, angles); the angles are those of the data.
+        Shape (snapshots, elements, sections, angles); the angles are those of the data.
     """
     return inside(run).shear_around(run.data["surface"].values, tuple(map(str, run.data["component"].values)))
 
 
 def section_turns(run: Run) -> np.ndarray:
-    """Turns of the sections at which stress is known, shape (elements, 2)."""
+    """Turns of the sections at which stress is known, shape (elements, sections)."""
     turn = run.data["turn"].values
-    middle, length = 0.5 * (turn[1:] + turn[:-1]), np.diff(turn)
-    return middle[:, None] + length[:, None] * np.array([-GAUSS, GAUSS])
+    xi = run.data["abscissa"].values if "abscissa" in run.data else THESIS.xi  # of all earlier runs
+    return turn[:-1, None] + np.diff(turn)[:, None] * xi
 
 
 @dataclass(frozen=True)
-class Moments:
+class Frames:
     """The wire at the start and after steps.
 
     Attributes:
-        labels: what moment each is.
+        labels: of the moments.
         x: stations, shape (moments, n + 1, 3), mm.
         shear: `shear_around`, mean of an element's sections, shape (moments, n, angles), MPa.
     """
@@ -54,12 +53,12 @@ class Moments:
     shear: np.ndarray
 
 
-def moments(run: Run, most: int | None = None) -> Moments:
+def frames(run: Run, most: int | None = None) -> Frames:
     """The start and every step.
 
     Args:
         run: opened results.
-        most: so many at most, evenly chosen; the ends of phases are among them however many they are.
+        most: maximum number, evenly chosen; the ends of all phases are always included.
     """
     data = run.data
     labels, x, shear = ["start"], data["position"].values[:1], shear_around(run)[:1].mean(axis=2)
@@ -73,7 +72,7 @@ def moments(run: Run, most: int | None = None) -> Moments:
         step, phase, travel, force = (float(data[name].values[k]) for name in ("step", "phase", "travel_mm", "force_N"))
         to, bears = names[min(int(phase), len(names) - 1)], round(force, 6) + 0.0
         labels.append(f"step {step:g}, to {to}: {plain(travel)} mm of travel, {plain(bears)} N")
-    return Moments(tuple(labels), x, shear)
+    return Frames(tuple(labels), x, shear)
 
 
 def _kept(phase: np.ndarray, most: int) -> np.ndarray:
@@ -85,7 +84,7 @@ def _kept(phase: np.ndarray, most: int) -> np.ndarray:
     return np.union1d(ends, some)
 
 
-def tubes(run: Run, shown: Moments, rings: int) -> tuple[np.ndarray, np.ndarray]:
+def tubes(run: Run, shown: Frames, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """Surface of the wire at moments, and the stress there.
 
     The angle about the wire is counted from the inside of the coil towards the binormal of the centre line, as in
@@ -93,7 +92,7 @@ def tubes(run: Run, shown: Moments, rings: int) -> tuple[np.ndarray, np.ndarray]
 
     Args:
         run: opened results.
-        shown: Moments.
+        shown: Frames.
         rings: along the wire.
 
     Returns:
@@ -115,7 +114,7 @@ def surface(
         x: stations, shape (n + 1, 3), mm.
         wire_radius: of the elements, shape (n,), mm.
         shear: about the wire's axis, mean of an element's sections, at evenly spaced angles, shape (n, angles), MPa.
-        side: where the inside of the coil is.
+        side: position of the inside of the coil.
         rings: along the wire.
     """
     at = np.linspace(turn[0], turn[-1], rings)
@@ -138,7 +137,7 @@ def closed(places: np.ndarray, stress: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def section_points(run: Run, snapshot: int) -> np.ndarray:
-    """Where the section points lie in space at a snapshot, shape (elements, 2, points, 3), mm."""
+    """Positions of the section points in space at a snapshot, shape (elements, sections, points, 3), mm."""
     turn, at = run.data["turn"].values, section_turns(run)
     line = CubicSpline(turn, run.data["position"].values[snapshot], axis=0)
     centre, inwards, binormal = (values.reshape(*at.shape, 1, 3) for values in _directions(line, at.ravel()))

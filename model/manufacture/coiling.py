@@ -9,7 +9,7 @@ half way through it.
 Stress relief may follow: the wire creeps while all resultants stay zero, which unbends it a little. θ and φ are then
 those for which it has the spring's shape afterwards.
 
-An end is ground last: what is left of its sections springs until all resultants are zero again, without a change of the
+An end is ground last: the remaining sections spring back until all resultants are zero, without a change of the
 spring's shape.
 
 What coiling machines do besides is left out: no temperature, no tension in the wire, no stress from drawing, and no
@@ -102,13 +102,13 @@ def coil(
 def grind(
     law: SectionLaw, fibres: np.ndarray, shape: np.ndarray, radius: float, curved: bool, states: np.ndarray
 ) -> np.ndarray:
-    """What is left of a section with a past once its other part is ground away: its states without a resultant.
+    """The remaining part of a section with initial stresses after grinding: its states without a resultant.
 
     Args:
         law: without time, as `Wire` takes it.
         fibres, shape: of the points that are left, see `integration` and `shape`.
         radius: of the wire, mm.
-        curved: do the fibres know the wire's curvature?
+        curved: whether the fibres include the wire's curvature
         states: of these points in the whole section, shape (points, n_state).
 
     Raises:

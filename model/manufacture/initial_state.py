@@ -18,7 +18,7 @@ from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.law.functions import HEATING, elasticity
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
-from coilset.model.section.segment import WHOLE
+from coilset.model.section.outline import WHOLE
 from coilset.model.section.wire import SectionLaw
 
 DIGITS = 9  # to which sections must agree to have the same past
@@ -41,7 +41,7 @@ def give_past(rod: Rod, spring: object) -> float | None:
     """Give all sections the stresses that the wire's past leaves, if it has one; collective.
 
     Args:
-        rod: with sections of fibres whose placement knows the wire's curvature; its equilibrium is replaced, without a
+        rod: with sections of fibres whose placement includes the curvature; its equilibrium is replaced, without a
             force on any section.
         spring: the entries of a case.
 

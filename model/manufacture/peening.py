@@ -7,7 +7,7 @@ strains balance all resultants to zero, so that layer and core share it. In a st
 
 The hoop stress of a peened layer, about as large, is no stress of the fibres. For yield under the torsion of a spring
 it makes no difference as long as both are equal: by von Mises σ and (σ, σ) count the same beside τ. The law follows the
-eigenstrain; it does not know how much the shots have hardened the layer.
+eigenstrain; hardening of the layer by the shots is not included.
 """
 
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ def peen(
         law: as `Wire` takes it, without time.
         rule: quadrature of the disk.
         radius: of the wire, mm.
-        bend: curvature of its axis, 1/mm, and `curved` whether the fibres know it.
+        bend: curvature of its axis, 1/mm, and `curved` whether the fibres include it.
         states: before, of the rule's points and then those of the surface, shape (points, n_state), or one row for all.
         layer: Layer.
         surface: points without weight, as in `Wire.of_disk`.

@@ -84,10 +84,10 @@ def read_nest(path: str | Path) -> Nest:
     for file in files:
         case = read_case(file)
         if case.ends != "seats":
-            raise InputError("a nest stands between seats; give ends: seats", "ends", file)
+            raise InputError("a nest is compressed between seats; give ends: seats", "ends", file)
         if case.seats.bottom.moves or case.seats.top.moves:
             raise InputError(
-                "seats that tilt or move aside are shared by both springs of a nest, which is not known; "
+                "seats that tilt or move aside are shared by both springs of a nest, which is not modelled; "
                 "give rigid ones",
                 "seats",
                 file,

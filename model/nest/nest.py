@@ -2,8 +2,8 @@
 
 Seats that are rigid and stay level give both springs the same height, and their forces add up. That holds while the
 wire of the inner spring stays inside that of the outer one: the room between them is computed after every step, from
-the largest distance of the one and the least distance of the other from the axis, wherever along the axis they are. It
-is sufficient, not necessary: a cone may stand in a cone with less. Contact between the two is not computed.
+the maximum distance of the one and the minimum distance of the other from the axis, anywhere along the axis. It is
+sufficient, not necessary: a cone may fit into a cone with less. Contact between the two is not computed.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,7 +18,6 @@ from coilset.model.base.errors import InputError, SolveError, naming
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase, Target
-from coilset.model.nest.clearance import inside, outside
 from coilset.model.nest.file import NAMES, Nest
 from coilset.model.nest.plan import Plan, plan
 from coilset.model.results.records.record import Result, Setup, Step
@@ -75,12 +74,12 @@ class Pressed:
         return float(member.setup.outer_length(member.result.snapshots[-1].x))
 
 
-def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: None, threads: int = 1) -> Pressed:
+def press(nest: Nest, report: Callable[[str, Step], object] = lambda name, step: None, threads: int = 1) -> Pressed:
     """Press both springs through the heights of the nest, and let them go.
 
     Args:
         nest: Nest.
-        told: called with the name of a spring and each of its steps.
+        report: called with the name of a spring and each of its steps.
         threads: of each run.
 
     Raises:
@@ -100,7 +99,7 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
     with naming(nest.path):
         heights = plan(nest.loading, springs)
     programs = [heights.program(one.free_length) for one in springs]
-    members = tuple(_run(nest, number, program, told, threads) for number, program in enumerate(programs))
+    members = tuple(_run(nest, number, program, report, threads) for number, program in enumerate(programs))
     steps = [_steps(member, heights) for member in members]
     forces = np.array([[0.0 if step is None else step.force_N for step in one] for one in steps])
     clearance = _clearance(members, steps)
@@ -113,7 +112,7 @@ def _build(case: Case, file: Path) -> Spring:
         return case.spring.build()
 
 
-def _run(nest: Nest, number: int, program: list[Phase], told: Callable[[str, Step], object], threads: int) -> Member:
+def _run(nest: Nest, number: int, program: list[Phase], report: Callable[[str, Step], object], threads: int) -> Member:
     """Run one spring through its program; without one the seats do not touch it."""
     name, case = NAMES[number], nest.cases[number]
     loading = program or [Phase(to=Target(force=0.0), steps=1)]  # its own is that of another run
@@ -122,7 +121,7 @@ def _run(nest: Nest, number: int, program: list[Phase], told: Callable[[str, Ste
     if not program:
         return Member(name, case, analysis.setup, None)
     try:
-        analysis.run(lambda step: told(name, step))
+        analysis.run(lambda step: report(name, step))
     except SolveError as error:
         raise SolveError(f"{name}: {error}") from None
     return Member(name, analysis.case, analysis.setup, analysis.result)
@@ -159,7 +158,7 @@ def _refuse_touching(heights: Plan, clearance: np.ndarray) -> None:
         at = int(touching[0])
         raise SolveError(
             f"at the height of {heights.heights[at]:.6g} mm the springs touch each other: they overlap by "
-            f"{-clearance[at]:.3g} mm; their contact is not known, and forces do not add up from "
+            f"{-clearance[at]:.3g} mm; their contact is not modelled, and their forces cannot be added from "
             "there"
         )
 
@@ -177,3 +176,19 @@ def _hands(springs: Sequence[Spring]) -> list[Warning]:
             float(-springs[0].hand),
         )
     ]
+
+
+def outside(spring: Spring, turns: np.ndarray, x: np.ndarray) -> float:
+    """The largest distance of the wire's surface from the axis, mm.
+
+    Args:
+        spring: whose wire it is.
+        turns: of the stations, shape (n,).
+        x: their positions, shape (n, 3), mm.
+    """
+    return float((np.hypot(x[:, 0], x[:, 1]) + 0.5 * spring.wire_diameter(turns)).max())
+
+
+def inside(spring: Spring, turns: np.ndarray, x: np.ndarray) -> float:
+    """The minimum distance of the wire's surface from the axis, mm; arguments as in `outside`."""
+    return float((np.hypot(x[:, 0], x[:, 1]) - 0.5 * spring.wire_diameter(turns)).min())

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from coilset.model.figures.panels.panel import said
+from coilset.model.figures.panels.panel import with_unit
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
 
@@ -60,17 +60,17 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     ):  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
         against = "against the load" if inside * s["force_max_N"] < 0.0 else "with the load"
     return [
-        Number("set", _said(s["set_mm"], "mm", 3), share),
-        Number("free length", _said(after, "mm", 3), _lengths(s)),
+        Number("set", with_unit(s["set_mm"], "mm", 3), share),
+        Number("free length", with_unit(after, "mm", 3), _lengths(s)),
         Number(
             "residual shear stress",
-            _said(inside, "MPa", 1),
+            with_unit(inside, "MPa", 1),
             f"inside of the coil{at}{', ' + against if against else ''}",
         ),
-        Number("maximum force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"])),
-        Number("maximum shear stress", _said(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
-        Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
-        Number("block height", _said(s["block_height_mm"], "mm", 2)),
+        Number("maximum force", with_unit(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"])),
+        Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
+        Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
+        Number("block height", with_unit(s["block_height_mm"], "mm", 2)),
     ]
 
 
@@ -84,10 +84,6 @@ def _lengths(summary: Mapping[str, Any]) -> str:
     earlier = [f"{length:.3f} mm after release {k}" for k, length in enumerate(release_lengths(summary)[:-1], 1)]
     between = f", {', '.join(earlier)}" if earlier else ""
     return f"after; {summary['free_length_before_mm']:.3f} mm before{between}"
-
-
-def _said(value: float | None, unit: str, digits: int) -> str:
-    return "none" if value is None else said(value, unit, digits)
 
 
 def _error(value: float | None) -> str:

@@ -13,7 +13,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
-from coilset.model.figures.panels.panel import said
+from coilset.model.figures.panels.panel import with_unit
 from coilset.model.report.answer import release_lengths
 from coilset.model.report.verdict import Check, checks, verdict
 from coilset.model.results.files.opened import Run
@@ -83,15 +83,15 @@ def results(summary: dict[str, Any]) -> list[tuple[str, str]]:
     s = summary
     rows = [
         ("material", s["material"]),
-        ("free length as wound", _text(s["free_length_before_mm"], "mm", 2)),
+        ("free length as wound", with_unit(s["free_length_before_mm"], "mm", 2, "")),
         *_releases(s),
-        ("set", _text(s["set_mm"], "mm", 2)),
-        ("block height", _text(s["block_height_mm"], "mm", 2)),
+        ("set", with_unit(s["set_mm"], "mm", 2, "")),
+        ("block height", with_unit(s["block_height_mm"], "mm", 2, "")),
         ("maximum force", f"{plain(s['force_max_N'], 5)} N"),
-        ("initial rate", _text(s["rate_N_per_mm"], "N/mm", 3)),
-        ("rate after release, 30 to 70 %", _text(s["rate_30_70_after_N_per_mm"], "N/mm", 3)),
-        ("maximum shear stress, inside", _text(s["shear_inside_max_MPa"], "MPa", 0)),
-        ("residual shear stress, inside", _text(s["residual_shear_inside_MPa"], "MPa", 1)),
+        ("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3, "")),
+        ("rate after release, 30 to 70 %", with_unit(s["rate_30_70_after_N_per_mm"], "N/mm", 3, "")),
+        ("maximum shear stress, inside", with_unit(s["shear_inside_max_MPa"], "MPa", 0, "")),
+        ("residual shear stress, inside", with_unit(s["residual_shear_inside_MPa"], "MPa", 1, "")),
     ]
     return [(name, text) for name, text in rows if text]
 
@@ -100,12 +100,8 @@ def _releases(summary: dict[str, Any]) -> list[tuple[str, str]]:
     """The free length after each release, where the summary lists them; else after the last one."""
     lengths = release_lengths(summary)
     if len(lengths) < 2:
-        return [("free length after release", _text(summary["free_length_after_mm"], "mm", 2))]
-    return [(f"free length after release {k}", _text(length, "mm", 2)) for k, length in enumerate(lengths, 1)]
-
-
-def _text(value: float | None, unit: str, digits: int) -> str:
-    return "" if value is None else said(value, unit, digits)
+        return [("free length after release", with_unit(summary["free_length_after_mm"], "mm", 2, ""))]
+    return [(f"free length after release {k}", with_unit(length, "mm", 2, "")) for k, length in enumerate(lengths, 1)]
 
 
 def _drawn(spring: Spring) -> str:

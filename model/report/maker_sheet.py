@@ -1,4 +1,4 @@
-"""The maker's sheet of a run: the formulas of the standards beside what the run found."""
+"""The maker's sheet of a run: the formulas of the standards beside the results of the run."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The page of a nest: what both springs bear together, what each has a share of, and the clearance between them."""
+"""The page of a nest: total force, share of each spring, and the clearance between them."""
 
 import csv
 import json
@@ -10,9 +10,9 @@ import numpy as np
 
 from coilset.model.base.errors import InputError, reading
 from coilset.model.base.style import round_end
-from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, curve, said
-from coilset.model.figures.panels.spring_view import scene_of
-from coilset.model.figures.wire import closed, moments, tubes
+from coilset.model.figures.panels.panel import Panel, Trace, axis, curve, with_unit
+from coilset.model.figures.panels.spring_view import scene_of, shown_surface, surface_trace
+from coilset.model.figures.wire import closed, frames, tubes
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.output import STEPS, characteristic
 from coilset.model.report.answer import Number
@@ -64,7 +64,11 @@ def write_nest_report(folder: str | Path) -> Path:
         title=f"{folder.resolve().name}: set {_length(summary['set_mm'], 3)}",
         subtitle=f"two springs between the same seats, pressed to {columns['seat_height_mm'].min():.4g} mm, released",
         answer=[
-            Number("set", _length(summary["set_mm"], 3), "of the height at which the seats touch the first spring"),
+            Number(
+                "set",
+                _length(summary["set_mm"], 3),
+                "of the height at which the seats touch the first spring",
+            ),
             Number(
                 "free length",
                 _length(summary["free_length_after_mm"], 3),
@@ -75,7 +79,11 @@ def write_nest_report(folder: str | Path) -> Path:
                 f"{plain(summary['force_max_N'], 5)} N",
                 ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items()),
             ),
-            Number("block height", _length(summary["block_height_mm"], 2), "of the spring that is solid first"),
+            Number(
+                "block height",
+                _length(summary["block_height_mm"], 2),
+                "of the spring that is solid first",
+            ),
             Number(
                 "minimum clearance",
                 _length(summary["clearance_min_mm"], 3),
@@ -89,7 +97,7 @@ def write_nest_report(folder: str | Path) -> Path:
 
 
 def _length(value: float | None, digits: int) -> str:
-    return "not released" if value is None else said(value, "mm", digits)
+    return with_unit(value, "mm", digits, "not released")
 
 
 def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: float) -> dict[str, Any]:
@@ -106,8 +114,8 @@ def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: f
             f"{100.0 * share:.1f} %",
             f"{summary['free_length_before_mm']:.3f} mm",
             _length(summary["set_mm"], 3),
-            said(summary["shear_inside_max_MPa"], "MPa"),
-            "–" if inside is None else said(inside, "MPa", 1),
+            with_unit(summary["shear_inside_max_MPa"], "MPa"),
+            "–" if inside is None else with_unit(inside, "MPa", 1),
         ],
     }
 
@@ -136,17 +144,10 @@ def view(runs: Mapping[str, Run]) -> Panel:
         for number in range(len(STATES)):
             traces.append(
                 {
-                    "type": "surface",
-                    "cmin": -end,
-                    "cmax": end,
-                    "colorscale": DIVERGING,
+                    **surface_trace(end),
+                    **shown_surface(places[number], stress[number]),
                     "showscale": not traces,
-                    "colorbar": {"title": {"text": "MPa"}, "thickness": 14, "len": 0.8},
-                    "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
-                    "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
                     "meta": {"choice": number},
-                    "surfacecolor": stress[number],
-                    **dict(zip("xyz", np.moveaxis(places[number], -1, 0), strict=True)),
                 }
             )
     for number in range(len(STATES)):  # one scale for each state, of the outer spring, or of the only one
@@ -155,7 +156,7 @@ def view(runs: Mapping[str, Run]) -> Panel:
     low, high = corners.min(axis=0), corners.max(axis=0)
     return Panel(
         "springs",
-        f"The shear stress on the wires' surfaces reaches {said(greatest, 'MPa')}",
+        f"The shear stress on the wires' surfaces reaches {with_unit(greatest, 'MPa')}",
         f"Both springs in three dimensions, free, pressed the most and released, coloured by the shear stress about "
         f"the wire's axis on the surface from {-end:g} to {end:g} MPa.",
         traces,
@@ -169,7 +170,7 @@ def view(runs: Mapping[str, Run]) -> Panel:
 
 def _surfaces(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Surface and stress of a spring in the three states, its lowest point at height 0."""
-    shown = moments(run)
+    shown = frames(run)
     pressed = int(np.argmin([np.ptp(x[:, 2]) for x in shown.x]))
     rings = min(2 * (run.data.sizes["station"] - 1), RINGS) + 1
     places, stress = closed(*tubes(run, shown, rings))

@@ -3,21 +3,40 @@
 import base64
 import gzip
 import json
+import math
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from coilset.model.base.errors import InputError
 from coilset.model.figures.panels.panel import Panel
-from coilset.model.report.glossary import GLOSSARY
-from coilset.model.report.packed import packed
 from coilset.model.results.files.folder import whole
 
 NAME = "report.html"
 SCRIPTS = {"sweep": "sweep.js", "nest": "nest.js"}  # of kinds of pages; run.js of the others
+# explained on a page at hover or focus
+GLOSSARY = {
+    "set": "Permanent loss of length after the spring was compressed and released.",
+    "free length": "Length of the spring without load.",
+    "block": "The state in which all coils touch; the spring cannot be compressed further.",
+    "block height": "Height of the spring at block, from its geometry.",
+    "rate": "Force per millimetre of travel; the slope of the characteristic.",
+    "initial rate": "Rate of the spring before anything yields or touches.",
+    "residual shear stress": "Shear stress that remains in the unloaded wire. If it acts against the load, the spring "
+    "can carry more, because the load must first overcome it.",
+    "maximum shear stress": "Largest shear stress on the wire's surface at the inside of the coil, under load.",
+    "inside of the coil": "The side of the wire that faces the spring's axis. The stress is highest there, and springs "
+    "break there.",
+    "travel": "Distance by which the seats have approached each other since the spring was free.",
+    "steps": "Increments of the load program; an equilibrium was found at the end of each.",
+    "plastic work": "Work of the plastic deformation per volume of wire; the material's data are valid up to a "
+    "given limit.",
+}
+KEY = "f4"  # of packed arrays, which a page reads without parsing each number
 Chapters = Sequence[tuple[str, Sequence[Panel]]]
 
 
@@ -28,8 +47,8 @@ def write_page(folder: Path, kind: str, chapters: Chapters, data: dict[str, Any]
         folder: to write to.
         kind: of the page, `run`, `design`, `nest` or `sweep`: its template.
         chapters: titles with their figures.
-        data: what the scripts of the page take besides; arrays are packed.
-        parts: what the template asks for.
+        data: further data for the scripts of the page; arrays are packed.
+        parts: variables of the template.
 
     Returns:
         The file.
@@ -87,3 +106,24 @@ def _plotly() -> str:
             "is not installed; the report draws with it: install python3-plotly, or pip install plotly", "", "plotly"
         ) from None
     return compressed(get_plotlyjs())
+
+
+def packed(value: Any) -> Any:
+    """Plain data with every array as single-precision bits, `{"f4": base64, "shape": [...]}`; short ones as lists.
+
+    A number that is not finite becomes None wherever a page reads text, since JSON has none.
+    """
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind != "f" or value.size < 24:
+            return packed(value.tolist())
+        bits = np.ascontiguousarray(value, dtype="<f4").tobytes()
+        return {KEY: base64.b64encode(bits).decode("ascii"), "shape": list(value.shape)}
+    if isinstance(value, dict):
+        return {key: packed(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [packed(one) for one in value]
+    if isinstance(value, np.generic):
+        return packed(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

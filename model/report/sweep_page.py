@@ -62,7 +62,7 @@ def write_sweep_report(folder: str | Path) -> Path:
 
 
 def _columns(data: xr.Dataset, of: str) -> list[dict[str, Any]]:
-    """The case's number, its inputs, what is shown first, and the rest."""
+    """Columns: number of the case, inputs, responses that are shown at first, and the others."""
     found = [_column("case", "case", "", np.arange(1, data.sizes["case"] + 1), True, "")]
     inputs = _list(data.attrs["inputs"])
     rest = [name for name in data.data_vars if data[name].dims == ("case",) and name not in SHOWN]

@@ -14,7 +14,7 @@ class Check:
     """One check.
 
     Attributes:
-        name: what is checked.
+        name: of the check.
         met: None where it could not be made.
         reason: why it is not met or could not be made; empty if it is met.
     """
@@ -43,29 +43,15 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
     cylinder = "" if has_formulas else "EN 13906-1 applies to cylinders of constant wire only"
     wire = "" if is_standard_wire else f"no permissible stress of {summary['material']} is known"
     complete = Check(LOAD, bool(summary["complete"]), "" if summary["complete"] else "the run ended before it did")
-    found = [
-        complete,
-        _check(FORMULAS, ("gap", "solid coils"), messages, cylinder),
-        _check(WIRE, ("stress", "strength", "endurance"), messages, cylinder or wire),
-        _check("buckling", ("buckled", "buckling", "snapped"), messages),
-        _check("material data", ("plastic work",), messages),
-        _check("accuracy", ("step error", "unknown error", "penetration", "wall"), messages),
-    ]
-    named = {
-        "gap",
-        "wall",
-        "solid coils",
-        "stress",
-        "strength",
-        "endurance",
-        "buckled",
-        "buckling",
-        "snapped",
-        "plastic work",
-        "step error",
-        "unknown error",
-        "penetration",
-    }
+    groups = (
+        (FORMULAS, ("gap", "solid coils"), cylinder),
+        (WIRE, ("stress", "strength", "endurance"), cylinder or wire),
+        ("buckling", ("buckled", "buckling", "snapped"), ""),
+        ("material data", ("plastic work",), ""),
+        ("accuracy", ("step error", "unknown error", "penetration", "wall"), ""),
+    )
+    found = [complete, *(_check(name, warnings, messages, not_made) for name, warnings, not_made in groups)]
+    named = {name for _, warnings, _ in groups for name in warnings}
     others = [one for name, one in messages.items() if name not in named | REMARKS]
     return [*found, Check("other warnings", not others, "; ".join(others))]
 
@@ -78,7 +64,7 @@ def verdict(made: Sequence[Check]) -> str:
     return (f"Not met: {', '.join(failed)}." if failed else "All checks made are met.") + open_
 
 
-def _check(name: str, warnings: Sequence[str], messages: Mapping[str, str], not_made: str = "") -> Check:
+def _check(name: str, warnings: Sequence[str], messages: Mapping[str, str], not_made: str) -> Check:
     failed = [messages[one] for one in warnings if one in messages]
     if failed:
         return Check(name, False, "; ".join(failed))

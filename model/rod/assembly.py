@@ -1,7 +1,12 @@
-"""From the elements to the rod: compiled sums over the elements."""
+"""From the elements to the rod: elements that are taken together, and compiled sums over them."""
 
 import numpy as np
 from numba import njit
+
+
+def blocks(cells: slice, size: int) -> list[slice]:
+    """A range of cells in blocks of so many; the last has what is left."""
+    return [slice(first, min(first + size, cells.stop)) for first in range(cells.start, cells.stop, size)]
 
 
 @njit(cache=True)

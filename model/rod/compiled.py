@@ -8,6 +8,7 @@ import contextlib
 import hashlib
 import json
 import os
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +21,12 @@ import ufl
 from dolfinx import default_scalar_type, fem, jit
 from mpi4py import MPI
 
-from coilset.model.rod import element_kernel, forms
+from coilset.model.rod import element_kernel, elements, forms
 from coilset.model.rod.element_kernel import PROCESSOR, ElementKernel, Loop
+from coilset.model.rod.elements import Element
 
-UNKNOWNS = 14  # of an element: two nodes with 6, and two shear angles
-_kept: list["CompiledForms"] = []  # one, as soon as this process has needed them
-SOURCES = (Path(__file__), Path(forms.__file__), Path(element_kernel.__file__))
+_kept: dict[Element, "CompiledForms"] = {}  # as soon as this process has needed them
+SOURCES = tuple(Path(str(module.__file__)) for module in (sys.modules[__name__], forms, element_kernel, elements))
 
 
 @dataclass(frozen=True)
@@ -48,16 +49,18 @@ class CompiledForms:
     Attributes:
         residual, tangent: Compiled.
         loops: of residual and tangent over the elements.
+        unknowns: of an element.
     """
 
     residual: Compiled
     tangent: Compiled
     loops: tuple[Loop, Loop]
+    unknowns: int
 
     def on(
         self, fields: Mapping[str, np.ndarray], x: np.ndarray, nodes: np.ndarray
     ) -> tuple[ElementKernel, ElementKernel]:
-        """Residual and tangent of a rod's elements, shapes (elements, 14) and (elements, 14, 14).
+        """Residual and tangent of a rod's elements, shapes (elements, k) and (elements, k, k).
 
         Args:
             fields: values by their names in forms.FIELDS, shape (cells, …); read at each evaluation.
@@ -65,48 +68,51 @@ class CompiledForms:
         """
 
         def kernel(compiled: Compiled, loop: Loop, rank: int) -> ElementKernel:
-            return ElementKernel(loop, [fields[name] for name in compiled.fields], x, nodes, (UNKNOWNS,) * rank)
+            return ElementKernel(loop, [fields[name] for name in compiled.fields], x, nodes, (self.unknowns,) * rank)
 
         return kernel(self.residual, self.loops[0], 1), kernel(self.tangent, self.loops[1], 2)
 
 
-def compiled_forms(comm: MPI.Comm) -> CompiledForms:
+def compiled_forms(comm: MPI.Comm, element: Element) -> CompiledForms:
     """The forms for rods of a communicator; collective.
 
     Where one rank does not have them, all ranks compile them together.
 
     Args:
         comm: communicator of the rods' mesh.
+        element: of the rods.
     """
-    if not _kept:
-        _kept.extend(_recorded())
-    if not comm.allreduce(len(_kept), op=MPI.MIN):
-        compiled = _compile(comm)
-        _kept[:] = [_loaded(*compiled)]
-        _write(compiled)
-    return _kept[0]
+    if element not in _kept:
+        _kept.update(_recorded(element))
+    if not comm.allreduce(element in _kept, op=MPI.LAND):
+        compiled = _compile(comm, element)
+        _kept[element] = _loaded(*compiled, element)
+        _write(compiled, element)
+    return _kept[element]
 
 
-def _recorded() -> list[CompiledForms]:
+def _recorded(element: Element) -> dict[Element, CompiledForms]:
     """What an earlier process has compiled; nothing if there is no record, or none of use."""
     with contextlib.suppress(OSError, ImportError, ValueError, KeyError, TypeError):
-        return [_loaded(*(Compiled(one["module"], tuple(one["fields"])) for one in json.loads(_record().read_text())))]
-    return []
+        parts = json.loads(_record(element).read_text())
+        residual, tangent = (Compiled(one["module"], tuple(one["fields"])) for one in parts)
+        return {element: _loaded(residual, tangent, element)}
+    return {}
 
 
-def _write(compiled: tuple[Compiled, Compiled]) -> None:
-    record = _record()
+def _write(compiled: tuple[Compiled, Compiled], element: Element) -> None:
+    record = _record(element)
     with contextlib.suppress(OSError):  # the next process compiles again
         partial = record.with_suffix(f".{os.getpid()}")
         partial.write_text(json.dumps([vars(one) for one in compiled]))
         os.replace(partial, record)
 
 
-def _record() -> Path:
+def _record(element: Element) -> Path:
     """The file that says what the forms were compiled into; its name depends on all that this depends on."""
     versions = [module.__version__ for module in (ufl, basix, ffcx, dolfinx)]
     options = sorted((name, str(value)) for name, value in ffcx.get_options(_options()).items())
-    content = repr([*(path.read_text(encoding="utf-8") for path in SOURCES), versions, options, PROCESSOR])
+    content = repr([*(path.read_text(encoding="utf-8") for path in SOURCES), versions, options, PROCESSOR, element])
     return jit.get_options()["cache_dir"] / f"coilset_forms_{hashlib.sha256(content.encode()).hexdigest()[:16]}.json"
 
 
@@ -114,15 +120,17 @@ def _options() -> dict[str, type]:
     return {"scalar_type": default_scalar_type}
 
 
-def _loaded(residual: Compiled, tangent: Compiled) -> CompiledForms:
-    return CompiledForms(residual, tangent, (element_kernel.load(residual.module), element_kernel.load(tangent.module)))
+def _loaded(residual: Compiled, tangent: Compiled, element: Element) -> CompiledForms:
+    loops = element_kernel.load(residual.module), element_kernel.load(tangent.module)
+    return CompiledForms(residual, tangent, loops, element.unknowns)
 
 
-def _compile(comm: MPI.Comm) -> tuple[Compiled, Compiled]:
+def _compile(comm: MPI.Comm, element: Element) -> tuple[Compiled, Compiled]:
     mesh = ufl.Mesh(basix.ufl.element("Lagrange", "interval", 1, shape=(3,)))
-    V = ufl.FunctionSpace(mesh, forms.rod_element())
-    fields = {name: ufl.Coefficient(ufl.FunctionSpace(mesh, element())) for name, element in forms.FIELDS.items()}
-    rod, names = forms.RodForms(mesh, V, **fields), {field: name for name, field in fields.items()}
+    V = ufl.FunctionSpace(mesh, forms.rod_element(element))
+    spaces = {name: ufl.FunctionSpace(mesh, one) for name, one in forms.field_elements(element).items()}
+    fields = {name: ufl.Coefficient(space) for name, space in spaces.items()}
+    rod, names = forms.RodForms(element, mesh, V, **fields), {field: name for name, field in fields.items()}
 
     def compiled(form: ufl.Form) -> Compiled:
         made = fem.compile_form(comm, form, _options())

@@ -26,7 +26,7 @@ from dolfinx.jit import mpi_jit_decorator
 from llvmlite import binding
 
 from coilset.model.base.errors import CoilsetError
-from coilset.model.rod.blocks import blocks
+from coilset.model.rod.assembly import blocks
 
 # As many as fill a register of 512 bits, or one of 256: with two registers for each value of FFCx's function, most of
 # which are live for long, more time goes into moving them to memory and back than the second one saves.
@@ -34,7 +34,7 @@ FEATURES = binding.get_host_cpu_features()
 LANES = 8 if FEATURES.get("avx512f") else 4
 PROCESSOR = binding.get_host_cpu_name() + FEATURES.flatten()
 OPTIONS = ["-std=gnu17", "-O1", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-Wno-psabi"]
-BLOCK = 256  # elements whose tangents, 1.6 kB each, fit into a processor's second cache
+BLOCK = 256  # elements whose tangents, 1.6 or 4.6 kB each, fit into a processor's second cache
 HEADER = f"""
 #include <math.h>
 #include <stdint.h>

@@ -18,7 +18,8 @@ import numpy as np
 from numba import njit
 
 from coilset.model.body.state import State, Where
-from coilset.model.rod.blocks import blocks
+from coilset.model.rod.assembly import blocks
+from coilset.model.rod.elements import Element
 from coilset.model.section.kinds import Sections
 
 BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
@@ -37,11 +38,12 @@ class FinerPath:
             and in the first one of all, the sections' arrays with `finer_` before their names, and the error of the
             section forces.
         names: of the sections' arrays that are followed.
+        element: Element, whose weights the sections have.
     """
 
-    def __init__(self, sections: Sections, state: State, names: Iterable[str]) -> None:
+    def __init__(self, sections: Sections, state: State, names: Iterable[str], element: Element) -> None:
         self._state, self._strain = state, state["strain"]
-        shape = self._strain.trial.shape
+        self._weights, shape = np.array(element.weights), self._strain.trial.shape
         self._increment = state.add("strain_increment", np.zeros(shape), Where.ELEMENT)
         self._first = state.add("first_strain_increment", np.zeros(shape), Where.ELEMENT)
         self._error = state.add("section_force_error", np.zeros(shape), Where.ELEMENT)
@@ -59,14 +61,14 @@ class FinerPath:
             self._on_the_way["clock"] = halfway.trial
         self._blocks, self._lost = list(in_blocks(sections)), False
 
-    def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, stands: bool = True) -> bool:
+    def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, final: bool = True) -> bool:
         """Advance the finer path to the trial strains.
 
         Args:
-            s: trial section forces, shape (cells, 2, 6), N and N mm.
+            s: trial section forces, shape (cells, sections, 6), N and N mm.
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
             kinked: whether the path has a kink within the step, at worst in its middle.
-            stands: whether the step is not given up any more.
+            final: whether the step is committed in any case.
 
         Returns:
             False if the law found no solution on this rank: the finer path then continues from the step's own end, see
@@ -79,7 +81,7 @@ class FinerPath:
         if not self._first.equilibrium.any():
             self._first.trial[:] = change
         middle = strain.equilibrium + 0.5 * change + bend
-        if not stands:
+        if not final:
             for name in self._fields:
                 self._state.overwrite(f"finer_{name}")
         good = all(self._follow(*block, middle, s) for block in self._blocks)
@@ -97,7 +99,8 @@ class FinerPath:
     def _follow(self, cells: slice, sections: Sections, middle: np.ndarray, s: np.ndarray) -> bool:
         """Advance a block of cells over `middle`, all cells' strains there, and write their errors."""
         strain, size = self._strain, cells.stop - cells.start
-        forces, D = np.empty((size, 2, 6)), np.empty((size, 2, 6, 6))
+        forces = np.empty((size, *strain.trial.shape[1:]))
+        D = np.empty((*forces.shape, 6))
         half, reached = of_cells(self._on_the_way, slice(size)), middle[cells]
         start, end = of_cells(self._start, cells), of_cells(self._end, cells)
         good = sections.update(reached, start, half, forces, D, False)
@@ -106,31 +109,37 @@ class FinerPath:
             self._error.trial[cells] = (forces - s[cells]) / (1.0 - 0.5 ** sections.law_over_time.order(start, end))
         return bool(good)
 
-    def rejoin(self) -> None:
+    def restart(self) -> None:
         """Continue from the sections' own last equilibrium; the error so far is not changed."""
         for name, field in self._fields.items():
             field.equilibrium[:] = self._state[name].equilibrium
 
     def works(self, length: np.ndarray) -> tuple[float, float, float, float]:
-        """Works of the error of the section forces, N mm; see EstimatesErrors.
+        """Works of the error of the section forces, N mm; see Body.
 
         Args:
             length: of the rank's own elements, shape (cells,), mm.
         """
         error = self._error
-        return _works(length, error.trial, error.equilibrium, self._increment.trial, self._first.trial)
+        return _works(length, self._weights, error.trial, error.equilibrium, self._increment.trial, self._first.trial)
 
 
 @njit(cache=True)
 def _works(
-    length: np.ndarray, error: np.ndarray, before: np.ndarray, now: np.ndarray, first: np.ndarray
+    length: np.ndarray,
+    weights: np.ndarray,
+    error: np.ndarray,
+    before: np.ndarray,
+    now: np.ndarray,
+    first: np.ndarray,
 ) -> tuple[float, float, float, float]:
     """Works of the error on the increments `now`, of what is new in it on these and on the `first`, of all on these."""
     own = new_own = left = error_left = 0.0
     for c in range(len(length)):
-        for g in range(2):
+        for g in range(len(weights)):
+            weight = weights[g] * length[c]
             for k in range(6):
-                force, new = 0.5 * length[c] * error[c, g, k], 0.5 * length[c] * (error[c, g, k] - before[c, g, k])
+                force, new = weight * error[c, g, k], weight * (error[c, g, k] - before[c, g, k])
                 own += force * now[c, g, k]
                 new_own += new * now[c, g, k]
                 left += new * first[c, g, k]

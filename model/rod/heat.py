@@ -17,7 +17,6 @@ from coilset.model.material.creep.law import HOURS, TEMPERATURE
 from coilset.model.material.law.law import Law
 from coilset.model.rod.finer_path import CLOCKS
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
-from coilset.model.rod.kinematics import GAUSS
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.ground import section_points
@@ -54,7 +53,7 @@ class WireHeat:
         radius = np.empty(cells.size_local + cells.num_ghosts)
         radius[:] = rod.largest_radius
         radius[: len(rod.radius)] = rod.radius
-        stretch, left = np.ones((2, len(radius), 2))
+        stretch, left = np.ones((2, len(radius), len(rod.element.abscissae)))
         stretch[: len(rod.radius)] = rod.placement.stretch
         assert isinstance(rod.sections, FibreSections)
         bend = rod.placement.curvature if rod.sections.curved else np.zeros_like(rod.placement.curvature)
@@ -63,7 +62,7 @@ class WireHeat:
         left[: len(rod.radius)] = np.sum(weights * g, axis=-1)  # 1 of a round section, whose centre is on its axis
         self._weights = weights * g
         self._left = left[: len(rod.radius)]
-        self.equation = HeatEquation(rod.line, radius, constants, rod.temperature, stretch, left)
+        self.equation = HeatEquation(rod.line, radius, constants, rod.temperature, rod.element, stretch, left)
         self._nodes = rod.state.add("temperature", np.full(len(rod.x), rod.temperature), Where.STATION)
         self.start_content = self.equation.content
         self._totals = rod.state.add("heat", np.zeros(2), Where.SHARED)  # generated, given off
@@ -95,14 +94,14 @@ class WireHeat:
         mean = np.sum(self._weights * rod.state["point_state"].equilibrium[..., COLUMN], axis=-1) / self._left
         got = np.pi * rod.radius[:, None] ** 2 * self._left * equation.constants.capacity
         equation.source[:] = 0.0
-        equation.source[:cells] = got * (mean - equation.at_sections(GAUSS)[:cells])
+        equation.source[:cells] = got * (mean - equation.at_sections(rod.element.xi)[:cells])
         before = equation.content
         equation.advance(0.0)
-        still = equation.at_sections(GAUSS)[:cells]
+        still = equation.at_sections(rod.element.xi)[:cells]
         generated = equation.content - before
         equation.source[:] = 0.0
         given_off = equation.advance(seconds)
-        self._warm(mean, still, equation.at_sections(GAUSS)[:cells], seconds)
+        self._warm(mean, still, equation.at_sections(rod.element.xi)[:cells], seconds)
         totals = self._totals.equilibrium
         totals += generated, given_off
         self._nodes.equilibrium[:] = equation.temperature.x.array[equation.dofs]
@@ -114,7 +113,8 @@ class WireHeat:
         """Bring the sections' points to the temperatures after conduction.
 
         Args:
-            mean: of the sections, before; still, now: what the equation says before and after, shape (cells, 2), K.
+            mean: of the sections, before; still, now: what the equation says before and after, K, shape (cells,
+                sections).
             seconds: in which differences fade that the equation does not see, in a section and within an element.
         """
         rod, constants = self.rod, self.equation.constants

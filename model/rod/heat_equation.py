@@ -19,6 +19,7 @@ from coilset.meshes.line import LineMesh
 from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.rod import forms
+from coilset.model.rod.elements import THESIS, Element
 
 
 @dataclass(frozen=True)
@@ -48,15 +49,16 @@ class HeatEquation:
         radius: of the wire, of all local cells, shape (local cells,), mm.
         constants: HeatConstants.
         start: temperature at the start, K.
-        stretch: length of wire over length of chord at the two Gauss sections of the local cells, shape (cells, 2);
+        element: whose sections give heat.
+        stretch: length of wire over length of chord at the sections of the local cells, shape (cells, sections);
             None: the wire is straight between the nodes.
-        left: part of the round section that grinding has left there, shape (cells, 2); None: all.
+        left: part of the round section that grinding has left there, shape (cells, sections); None: all.
 
     Attributes:
         temperature: function of the nodes, K.
         dofs: place of each local node in it, shape (local nodes,).
         surroundings: T∞ now, a constant of the forms, K.
-        source: heat that a length got over the step, at the two Gauss sections of the local cells, shape (cells, 2), N.
+        source: heat that a length got over the step, at the sections of the local cells, shape (cells, sections), N.
     """
 
     def __init__(
@@ -65,6 +67,7 @@ class HeatEquation:
         radius: np.ndarray,
         constants: HeatConstants,
         start: float,
+        element: Element = THESIS,
         stretch: np.ndarray | None = None,
         left: np.ndarray | None = None,
     ) -> None:
@@ -74,13 +77,13 @@ class HeatEquation:
         self.dofs = np.empty(len(line.node), dtype=np.int64)
         self.dofs[geometry_dofs(mesh)] = self.temperature.function_space.dofmap.list
         before = fem.Function(self.temperature.function_space)
-        heat = fem.Function(fem.functionspace(mesh, forms.section_element(())))
+        heat = fem.Function(fem.functionspace(mesh, forms.section_element((), element)))
         longer, whole = fem.Function(heat.function_space), fem.Function(heat.function_space)
         longer.x.array[:] = 1.0 if stretch is None else stretch.ravel()
         whole.x.array[:] = 1.0 if left is None else left.ravel()
         wire = fem.Function(fem.functionspace(mesh, ("DG", 0)))
         wire.x.array[:] = radius
-        self.source, self._before = heat.x.array.reshape(-1, 2), before
+        self.source, self._before = heat.x.array.reshape(-1, len(element.abscissae)), before
         self._seconds = fem.Constant(mesh, PETSc.ScalarType(1.0))
         area, around = np.pi * wire**2 * whole, 2.0 * np.pi * wire
         capacity, conductivity, convection, air, first = (
@@ -89,7 +92,7 @@ class HeatEquation:
         )
         self.surroundings = air
         tips = self._at_tips(constants.tips)
-        dx, tip = ufl.dx(metadata=forms.QUADRATURE), ufl.ds
+        dx, tip = ufl.dx(metadata=forms.at_sections(element)), ufl.ds
         T, v = ufl.TrialFunction(self.temperature.function_space), ufl.TestFunction(self.temperature.function_space)
         t, now = self._seconds, self.temperature
 

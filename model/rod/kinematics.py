@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
+from coilset.model.rod.elements import PER_LENGTH
 from coilset.model.rotations.kernels import (
     exponential,
     inverse_chart_tangent,
@@ -13,8 +14,6 @@ from coilset.model.rotations.kernels import (
     multiply_transposed,
     rotate,
 )
-
-GAUSS = np.array([0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0)])  # abscissae ξ = x/l (5.2.43)
 
 
 def chord_triads(chords: np.ndarray) -> np.ndarray:
@@ -34,29 +33,29 @@ def displace_nodes(
     increment: np.ndarray,
     u_dofs: np.ndarray,
     rotation_dofs: np.ndarray,
-    shear_dofs: np.ndarray,
+    own_dofs: np.ndarray,
     cells: np.ndarray,
     x0: np.ndarray,
     chord0: np.ndarray,
     R0: np.ndarray,
-    shear0: np.ndarray,
+    own0: np.ndarray,
     x: np.ndarray,
     chord: np.ndarray,
     R: np.ndarray,
-    shear: np.ndarray,
+    own: np.ndarray,
     T: np.ndarray,
     T_cells: np.ndarray,
 ) -> None:
-    """Bring nodes and shear angles from the last equilibrium, 0, to the increments of the unknowns.
+    """Bring nodes and the elements' own unknowns from the last equilibrium, 0, to the increments of the unknowns.
 
     Chords are updated by differences of the increments: differences of the positions would lose digits as l/L.
 
     Args:
         increment: of the local unknowns.
-        u_dofs, rotation_dofs: of the nodes, shape (nodes, 3); shear_dofs: of the cells, shape (cells, 2).
+        u_dofs, rotation_dofs: of the nodes, shape (nodes, 3); own_dofs: of the cells, shape (cells, own).
         cells: node numbers, shape (cells, 2).
         x, x0: positions, shape (nodes, 3), mm; chord, chord0: shape (cells, 3), mm.
-        R, R0: rotations of the nodes, shape (nodes, 3, 3); shear, shear0: shape (cells, 2).
+        R, R0: rotations of the nodes, shape (nodes, 3, 3); own, own0: shape (cells, own).
         T: written, tangents of the nodes' charts, shape (nodes, 3, 3); T_cells: the same of the cells' nodes.
     """
     v, turn = np.empty(3), np.empty((3, 3))
@@ -69,8 +68,8 @@ def displace_nodes(
         i, j = cells[c, 0], cells[c, 1]
         for k in range(3):
             chord[c, k] = chord0[c, k] + (increment[u_dofs[j, k]] - increment[u_dofs[i, k]])
-        for k in range(2):
-            shear[c, k] = shear0[c, k] + increment[shear_dofs[c, k]]
+        for k in range(own.shape[1]):
+            own[c, k] = own0[c, k] + increment[own_dofs[c, k]]
         T_cells[c, 0], T_cells[c, 1] = T[i], T[j]
 
 
@@ -135,15 +134,17 @@ def section_strains(
     R: np.ndarray,
     E0: np.ndarray,
     l0: np.ndarray,
-    shear: np.ndarray,
+    own: np.ndarray,
     timoshenko_factor: np.ndarray,
     xi: np.ndarray,
+    mode_strains: np.ndarray,
+    mode_values: np.ndarray,
     E: np.ndarray,
     P: np.ndarray,
     W: np.ndarray,
     e: np.ndarray,
 ) -> None:
-    """Section strains of all elements at their two Gauss sections, from (5.2.4) in the element's moving triad.
+    """Strains of all elements at their sections, from (5.2.4) in the element's moving triad.
 
     The nodes' rotations θ are measured relative to the triad of the current configuration, so rotations within an
     increment need not be small, and the strains do not depend on the path.
@@ -153,13 +154,13 @@ def section_strains(
         chords: current chords from node 1 to node 2, shape (cells, 3), mm.
         R: rotations of the nodes since the stress-free state, shape (nodes, 3, 3).
         E0: triads of the stress-free state, shape (cells, 3, 3), l0: chord lengths there, shape (cells,).
-        shear: excess shear angles, shape (cells, 2), timoshenko_factor: c, part of the rotations in the
+        own: excess shear angles and modes, shape (cells, own), timoshenko_factor: c, part of the rotations in the
             shear angles, shape (cells,), see coilset.model.rod.forms.
-        xi: Gauss abscissae on the chord, shape (2,).
+        xi, mode_strains, mode_values: of the Element.
         E: written, current triads (columns), shape (cells, 3, 3).
         P: written, rate of the rotations θ against the triad for a relative spin, shape (cells, 2, 3, 3).
         W: written, what makes the triad's spin about its chord, see mean_triad, shape (cells, 3, 3).
-        e: written, ε, γ12, γ13, φ′, −w″, v″ of the chord axis, shape (cells, 2, 6); ε is logarithmic.
+        e: written, ε, γ12, γ13, φ′, −w″, v″ of the chord axis, shape (cells, sections, 6); ε is logarithmic.
     """
     chord = np.empty(3)
     A = np.empty((3, 3))
@@ -180,8 +181,8 @@ def section_strains(
             logarithm(B, t)
             inverse_chart_tangent(t, P[c, a])
         m13, m14 = 0.5 * (t1[1] + t2[1]), 0.5 * (t1[2] + t2[2])
-        u13, u14 = shear[c, 0] - timoshenko_factor[c] * m13, shear[c, 1] - timoshenko_factor[c] * m14
-        for g in range(2):
+        u13, u14 = own[c, 0] - timoshenko_factor[c] * m13, own[c, 1] - timoshenko_factor[c] * m14
+        for g in range(len(xi)):
             H = 12.0 * xi[g] - 6.0  # H2″ + H4″, times l
             e[c, g, 0] = math.log(l / l0[c])
             e[c, g, 1] = u14
@@ -189,3 +190,6 @@ def section_strains(
             e[c, g, 3] = (t2[0] - t1[0]) / l
             e[c, g, 4] = (t2[1] - t1[1] + H * (u13 + m13)) / l
             e[c, g, 5] = (t2[2] - t1[2] + H * (u14 + m14)) / l
+            for k in range(len(mode_strains)):
+                mode = mode_values[g, k] * own[c, 2 + k]
+                e[c, g, mode_strains[k]] += mode / l if mode_strains[k] >= PER_LENGTH else mode

@@ -14,13 +14,13 @@ class Numbering:
 
     Attributes:
         u, rotations: displacements and rotation charts of the local nodes, shape (nodes, 3).
-        shear: excess shear angles of the owned cells, shape (cells, 2).
-        elements: all unknowns of the owned cells, shape (cells, 14).
+        own: the owned cells' own unknowns, excess shear angles first, shape (cells, own).
+        elements: all unknowns of the owned cells, shape (cells, 12 + own).
     """
 
     u: np.ndarray
     rotations: np.ndarray
-    shear: np.ndarray
+    own: np.ndarray
     elements: np.ndarray
 
     @classmethod
@@ -32,9 +32,9 @@ class Numbering:
         """
         nodes = geometry_dofs(V.mesh)
         u, rotations = np.empty((2, len(V.mesh.geometry.x), 3), dtype=np.int32)
-        nodal, shear = V.sub(0), V.sub(1)
+        nodal, own = V.sub(0), V.sub(1)
         for i in range(3):
             u[nodes, i] = nodal.sub(i).dofmap.list
             rotations[nodes, i] = nodal.sub(i + 3).dofmap.list
-        angles = np.stack([shear.sub(i).dofmap.list[:cells, 0] for i in range(2)], axis=1)
-        return cls(u, rotations, angles, V.dofmap.list[:cells])
+        parts = [own.sub(i).dofmap.list[:cells, 0] for i in range(own.num_sub_spaces)]
+        return cls(u, rotations, np.stack(parts, axis=1), V.dofmap.list[:cells])

@@ -1,9 +1,9 @@
-"""Section forces predicted by a Newton correction, with which the stiffness of the rotating frame is built.
+"""Mixed integration point (MIP) iteration: section forces predicted by a Newton correction.
 
 A correction δ rotates the elements by finite angles, and the axial and shear strains at its end are wrong by terms of
 second order, ½ w′². In a slender rod the resulting forces E A ½ w′² are much larger than the true ones, and a frame
-stiffness built with them is misleading. It is therefore built with s + D B δ, the forces found by the linear solve, as
-with mixed integration points: D. Magisano, L. Leonetti, G. Garcea, How to improve efficiency and robustness of the
+stiffness of the rotating frame built with them is misleading. It is therefore built with s + D B δ, the forces found
+by the linear solve: D. Magisano, L. Leonetti, G. Garcea, How to improve efficiency and robustness of the
 Newton method in geometrically non-linear structural problem discretized via displacement-based finite elements, Comput.
 Methods Appl. Mech. Engrg. 313 (2017). At equilibrium both are the same.
 """
@@ -13,9 +13,9 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.rod.blocks import blocks
+from coilset.model.rod.assembly import blocks
 from coilset.model.rod.coefficients import Coefficients
-from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.elements import PER_LENGTH, Element
 from coilset.model.rod.numbering import Numbering
 
 BLOCK = 4096  # cells that are taken together, so that no large arrays are made on the way
@@ -33,9 +33,11 @@ def linear_strains(
     strain: np.ndarray,
     u: np.ndarray,
     rotations: np.ndarray,
-    shear: np.ndarray,
+    own: np.ndarray,
     increments: np.ndarray,
     xi: np.ndarray,
+    mode_strains: np.ndarray,
+    mode_values: np.ndarray,
     e: np.ndarray,
 ) -> None:
     """Write B δ, the change of the section strains by increments of first order.
@@ -43,10 +45,10 @@ def linear_strains(
     Args:
         cells, chords: of the Prediction.
         E, T, P, W, timoshenko_factor, strain: Coefficients, the last one of these is `e`.
-        u, rotations, shear: of the Numbering.
+        u, rotations, own: of the Numbering.
         increments: of the local unknowns, mm and rad.
-        xi: abscissae of the Gauss sections.
-        e: written, ε, γ12, γ13, φ′, −w″, v″ at these, shape (cells, 2, 6).
+        xi, mode_strains, mode_values: of the Element.
+        e: written, ε, γ12, γ13, φ′, −w″, v″ at the sections, shape (cells, sections, 6).
     """
     spins, t, frame, d = np.empty((2, 3)), np.empty((2, 3)), np.empty(3), np.empty(3)
     for c in range(len(cells)):
@@ -75,15 +77,18 @@ def linear_strains(
                 for i in range(3):
                     t[a, i] += P[c, a, i, j] * relative
         stretch = d[0] / l
-        for g in range(2):
+        for g in range(len(xi)):
             H = 12.0 * xi[g] - 6.0  # H2″ + H4″, times l²
             e[c, g, 0] = stretch
             e[c, g, 3] = (t[1, 0] - t[0, 0]) / l
             for k in range(2):  # about the second axis and the third
                 mean = 0.5 * (t[0, 1 + k] + t[1, 1 + k])
-                excess = increments[shear[c, k]] - timoshenko_factor[c] * mean
+                excess = increments[own[c, k]] - timoshenko_factor[c] * mean
                 e[c, g, 2 - k] = -excess if k == 0 else excess
                 e[c, g, 4 + k] = (t[1, 1 + k] - t[0, 1 + k] + H * (excess + mean)) / l
+            for k in range(len(mode_strains)):
+                mode = mode_values[g, k] * increments[own[c, 2 + k]]
+                e[c, g, mode_strains[k]] += mode / l if mode_strains[k] >= PER_LENGTH else mode
             for i in range(3, 6):
                 e[c, g, i] -= stretch * strain[c, g, i]  # a longer chord is bent less
 
@@ -96,13 +101,21 @@ class Prediction:
         chords: from node to node, shape (cells, 3), mm, on trial.
         coefficients: Coefficients, on trial.
         numbering: Numbering of the unknowns.
+        element: Element.
 
     Attributes:
         forces, strain, tangent: section forces, strains and tangent before the correction.
-        change: B δ of the whole correction, shape (cells, 2, 6).
+        change: B δ of the whole correction, shape (cells, sections, 6).
     """
 
-    def __init__(self, cells: np.ndarray, chords: np.ndarray, coefficients: Coefficients, numbering: Numbering) -> None:
+    def __init__(
+        self,
+        cells: np.ndarray,
+        chords: np.ndarray,
+        coefficients: Coefficients,
+        numbering: Numbering,
+        element: Element,
+    ) -> None:
         self._coefficients = c = coefficients
         self._on_trial = c.s, c.e, c.D
         self.forces, self.strain, self.tangent = (np.zeros_like(each) for each in self._on_trial)
@@ -118,28 +131,29 @@ class Prediction:
             c.e,
             numbering.u,
             numbering.rotations,
-            numbering.shear,
+            numbering.own,
         )
+        self._sections = element.xi, element.mode_strains, element.mode_values
 
     def begin(self, correction: np.ndarray) -> None:
         """Take the state on trial, from which a correction of the local unknowns begins, mm and rad."""
         for kept, on_trial in zip((self.forces, self.strain, self.tangent), self._on_trial, strict=True):
             np.copyto(kept, on_trial)
-        linear_strains(*self._arguments, correction, GAUSS, self.change)
+        linear_strains(*self._arguments, correction, *self._sections, self.change)
 
-    def forces_after(self, length: float) -> None:
-        """Write s + D B δ after `length` of the correction into the foreseen forces."""
-        out = self._coefficients.foreseen
+    def forces_after(self, share: float) -> None:
+        """Write s + D B δ after a share of the correction into the predicted forces."""
+        out = self._coefficients.predicted
         np.einsum("ngij,ngj->ngi", self.tangent, self.change, out=out)
-        out *= length
+        out *= share
         out += self.forces
 
-    def take_second_order_off(self, length: float) -> None:
-        """Take the part of second-order strains off the forces after `length` of the correction: s − D (e − e_lin).
+    def without_second_order(self, share: float) -> None:
+        """Write s − D (e − e₁) into the predicted forces, e₁ = e₀ + B δ after a share of the correction.
 
-        In an elastic rod they are the foreseen ones then; where the wire yields, the reduction by yielding remains.
+        In an elastic rod they are those of `forces_after`; where the wire yields, the reduction by yielding remains.
         """
-        forces, strain = self._coefficients.s, self._coefficients.e
+        forces, strain, out = self._coefficients.s, self._coefficients.e, self._coefficients.predicted
         for part in blocks(slice(0, len(forces)), BLOCK):
-            second = strain[part] - self.strain[part] - length * self.change[part]
-            forces[part] -= np.einsum("ngij,ngj->ngi", self.tangent[part], second)
+            second = strain[part] - self.strain[part] - share * self.change[part]
+            np.subtract(forces[part], np.einsum("ngij,ngj->ngi", self.tangent[part], second), out=out[part])

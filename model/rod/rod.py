@@ -13,7 +13,7 @@ from coilset.meshes.springs.placement import Placement, straight
 from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.extremes import largest
-from coilset.model.body.body import Moment
+from coilset.model.body.body import Body, Moment
 from coilset.model.body.lever import Lever
 from coilset.model.body.state import Field, State, Where
 from coilset.model.material.creep.law import CreepLaw
@@ -22,8 +22,10 @@ from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.coefficients import Coefficients, timoshenko_factor
 from coilset.model.rod.compiled import compiled_forms
+from coilset.model.rod.element_kernel import ElementKernel
+from coilset.model.rod.elements import THESIS, Element
 from coilset.model.rod.finer_path import CLOCKS, FinerPath
-from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
+from coilset.model.rod.kinematics import chord_triads, displace_nodes, section_strains
 from coilset.model.rod.numbering import Numbering
 from coilset.model.rod.prediction import Prediction
 from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
@@ -35,7 +37,7 @@ from coilset.model.section.rules import DiskRule
 EPSILON = float(np.finfo(float).eps)
 
 
-class Rod:
+class Rod(Body):
     """Straight elasto-plastic rods along a line mesh.
 
     Args:
@@ -48,23 +50,26 @@ class Rod:
         temperature: of the rod, K; at the start, if plastic work heats it. None: the first one of the material.
         kind: of the sections, see `coilset.model.section.kinds`, and `degree` of those that warp.
         threads: Threads that advance the sections; None: the calling one alone.
+        element: Element; the placement is that of its sections.
 
     Raises:
         InputError: if the temperature lies outside the material's table.
 
     Attributes:
         increment: function of the increments since the last equilibrium.
-        correction: function of the last correction to them, the input of `predict`.
         state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
-            `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
-            `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there. Rods of up to KEPT
-            elements, whose law knows no time, also keep `section_forces` and `section_tangents`.
+            `own`, `strain`, shape (cells, sections, 6), and the arrays of the sections, of the owned cells; of these
+            `point_state`, shape (cells, sections, points, n_state), and `surface_state` are always there. Rods of up to
+            KEPT elements, whose law is rate-independent, also keep `section_forces` and `section_tangents`.
         numbering: Numbering of the unknowns.
         coefficients: Coefficients of the forms, with the section strains and forces on trial.
         chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
         arms: stations whose unknowns are those of a rigid head, and where they are from its point in the stress-free
             state, shape (3,), mm; `levers`: Levers of those among the local nodes.
     """
+
+    predicts = True
+    element_dofs: np.ndarray
 
     def __init__(
         self,
@@ -77,39 +82,40 @@ class Rod:
         kind: str = "plane",
         degree: int = 3,
         threads: Threads | None = None,
+        element: Element = THESIS,
     ) -> None:
+        self.element = element
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
         self.comm = mesh.comm
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         self.temperature = law.reference_temperature if temperature is None else temperature
-        element = line.element[:n]
-        self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
-        self.placement = straight(n)
-        if placement is not None:
-            self.placement = placement.part(element)
+        order = line.element[:n]
+        self.radius = np.ascontiguousarray(np.asarray(radius, float)[order])
+        sections = len(self.element.abscissae)
+        self.placement = straight(n, sections) if placement is None else placement.part(order)
         self.sections = make_sections(
             kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree, threads
         )
         self.in_time = self.sections.law_over_time.in_time
 
-        self.V = fem.functionspace(mesh, forms.rod_element())
+        self.V = fem.functionspace(mesh, forms.rod_element(element))
         self.increment = fem.Function(self.V)
         self.numbering = numbering = Numbering.of(self.V, n)
-        self.rotation_dofs, self.element_dofs = numbering.rotations, numbering.elements  # as Body's protocols have them
+        self.rotation_dofs, self.element_dofs = numbering.rotations, numbering.elements
         self.cells = np.ascontiguousarray(geometry_dofs(mesh)[:n])
         self._nodes = self.cells.astype(np.int32)
         x = mesh.geometry.x
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
-        self.coefficients = Coefficients(timoshenko_factor(law.E, law.G, self.radius, self.l0))
-        self.correction = fem.Function(self.V)
-        self._increment, self._correction = self.increment.x.array, self.correction.x.array
+        self.coefficients = Coefficients(element, timoshenko_factor(law.E, law.G, self.radius, self.l0))
+        self._increment = self.increment.x.array
         self._finer: FinerPath | None = None
         self.levers: list[Lever] = []
         self.arms: dict[int, np.ndarray] = {}
-        self._residual, self._tangent = compiled_forms(self.comm).on(vars(self.coefficients), x, self._nodes)
+        self._forms = compiled_forms(self.comm, element)
+        self._residual, self._tangent = self._forms.on(vars(self.coefficients), x, self._nodes)
         self.largest_radius = max_of_ranks(self.comm, self.radius.max(initial=0.0))
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
         self.extent = float(np.ptp(line.stations, axis=0).max())
@@ -124,7 +130,7 @@ class Rod:
         self._x = state.add("x", x, Where.STATION)
         self._R = state.add("R", np.tile(np.eye(3), (len(x), 1, 1)), Where.STATION)
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
-        self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
+        self._own = state.add("own", np.zeros((n, self.element.own)), Where.ELEMENT)
         self._strain = state.add("strain", c.e, Where.ELEMENT)
         self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
         self._forces: list[Field] = []  # at the last equilibrium; an element's tangents take 576 bytes
@@ -136,16 +142,16 @@ class Rod:
             self._increment,
             numbering.u,
             numbering.rotations,
-            numbering.shear,
+            numbering.own,
             self.cells,
             self._x.equilibrium,
             self._chord.equilibrium,
             self._R.equilibrium,
-            self._shear.equilibrium,
+            self._own.equilibrium,
             self._x.trial,
             self._chord.trial,
             self._R.trial,
-            self._shear.trial,
+            self._own.trial,
             self.chart,
             c.T,
         )
@@ -155,9 +161,11 @@ class Rod:
             self._R.trial,
             self.E0,
             self.l0,
-            self._shear.trial,
+            self._own.trial,
             c.timoshenko_factor,
-            GAUSS,
+            self.element.xi,
+            self.element.mode_strains,
+            self.element.mode_values,
             c.E,
             c.P,
             c.W,
@@ -175,7 +183,7 @@ class Rod:
 
     @property
     def clock(self) -> np.ndarray:
-        """Hours since the start, temperature (K) and warm hours at the last equilibrium; see PassesTime."""
+        """Hours since the start, temperature (K) and warm hours at the last equilibrium; see Body."""
         clocks = (self.state[name].equilibrium for name in ("clock", "heat_clock") if name in self.state)
         return next(clocks, np.array([0.0, self.temperature, 0.0]))
 
@@ -185,7 +193,7 @@ class Rod:
         return float(self.state["heat_clock"].equilibrium[1]) if "heat_clock" in self.state else float(self.clock[1])
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
-        """Set the clocks of the state on trial; see PassesTime."""
+        """Set the clocks of the trial state; see Body."""
         if self.in_time is None:
             raise ValueError(f"'{self.law.name}' neither creeps nor depends on the rate, so time has no effect on it")
         start, halfway, on_trial = self.clock, *(self.state[name].trial for name in reversed(CLOCKS))
@@ -201,12 +209,12 @@ class Rod:
 
     @property
     def point_state(self) -> np.ndarray:
-        """State at the section points, shape (cells, 2, points, n_state), MPa: on trial, in a long rod committed."""
+        """State at the section points, MPa: on trial, in a long rod committed; (cells, sections, points, n_state)."""
         return self._points[POINTS]
 
     @property
     def surface_state(self) -> np.ndarray:
-        """State of the points on the wire's surface, shape (cells, 2, surface points, n_state), MPa."""
+        """State of the points on the wire's surface, shape (cells, sections, surface points, n_state), MPa."""
         return self._points[SURFACE]
 
     # ---- Body ------------------------------------------------------------------------------------------------------
@@ -214,12 +222,10 @@ class Rod:
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
         self._move()
-        has_stress = self._points.update(self.coefficients.s, self.coefficients.D)
-        self.stop_foreseeing()
-        return has_stress
+        return self._points.update(self.coefficients.s, self.coefficients.D)
 
-    def stand(self) -> bool:
-        """Forces and tangents of the last equilibrium, unless they change in time; see Foresees."""
+    def recall(self) -> bool:
+        """Forces and tangents of the last equilibrium, unless they change in time; see Body."""
         if self._forces:
             self._move()
         for field in self._forces:
@@ -248,7 +254,7 @@ class Rod:
             displace_nodes(increments, *self._of_nodes[1:])
         section_strains(*self._of_cells)
 
-    def follow(self) -> None:
+    def advance(self) -> None:
         """Update the points on the wire's surface to the end of the increment, and those of a long rod; see Body."""
         self._points.follow()
         if self._finer is not None:
@@ -258,69 +264,66 @@ class Rod:
             halfway[:] = clock
 
     def estimate_errors(self) -> None:
-        """Follow every step on a finer path from now on; see EstimatesErrors."""
-        self._finer = FinerPath(self.sections, self.state, self._points.bearing)
+        """Follow every step on a finer path from now on; see Body."""
+        self._finer = FinerPath(self.sections, self.state, self._points.bearing, self.element)
 
-    def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
-        """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""
+    def error_works(self, ratio: float, kinked: bool, final: bool) -> tuple[float, float, float, float]:
+        """Works of the errors of all steps so far and of the last one; see Body."""
         assert self._finer is not None, "estimate_errors comes before"
-        if not self._finer.follow(self.coefficients.s, ratio, kinked, stands):
+        if not self._finer.follow(self.coefficients.s, ratio, kinked, final):
             return np.nan, np.nan, np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
 
     def resolves_time(self, fall: float) -> bool:
-        """Whether the finer path tells the error of a step in time; see EstimatesErrors."""
+        """Whether the finer path resolves the error of a step in time; see Body."""
         if not isinstance(self.in_time, CreepLaw):
             return True
         end, middle = (self.state[name] for name in CLOCKS)
         stress = surface.equivalent(self.surface_state, self.sections.components).max(initial=0.0)
         return self.in_time.is_resolved((end.equilibrium, middle.trial, end.trial), float(stress), fall)
 
-    def rejoin_finer_path(self) -> None:
-        """Estimate from the last equilibrium on; see EstimatesErrors."""
+    def restart_estimate(self) -> None:
+        """Estimate from the last equilibrium on; see Body."""
         assert self._finer is not None, "estimate_errors comes before"
-        self._finer.rejoin()
+        self._finer.restart()
 
     @cached_property
     def _prediction(self) -> Prediction:
         """Made when it is first needed: its arrays then take the memory that the first factors needed for a moment."""
-        return Prediction(self.cells, self._chord.trial, self.coefficients, self.numbering)
+        return Prediction(self.cells, self._chord.trial, self.coefficients, self.numbering, self.element)
 
-    def predict(self) -> None:
-        """Predict the section forces after `correction`, from the trial state; see Foresees."""
-        correction = self._correction
+    @cached_property
+    def _predicted_residual(self) -> ElementKernel:
+        """The loop of the internal forces over the predicted section forces."""
+        fields = vars(self.coefficients) | {"s": self.coefficients.predicted}
+        return self._forms.on(fields, self.mesh.geometry.x, self._nodes)[0]
+
+    def predict(self, correction: np.ndarray) -> None:
+        """Predict the section forces after a correction, from the trial state; see Body."""
         if self.levers:
             correction = correction.copy()
             for lever in self.levers:
                 lever.carry_correction(correction)
         self._prediction.begin(correction)
 
-    def foresee(self, length: float) -> None:
-        """Build the frame stiffness of the next tangents with the predicted section forces; see Foresees."""
-        self._prediction.forces_after(length)
-
-    def stop_foreseeing(self) -> None:
-        """Build the tangents with the actual section forces; see Foresees."""
-        self.coefficients.foreseen[:] = self.coefficients.s
-
-    def forces_without_second_order(self, vector: np.ndarray, length: float) -> None:
-        """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
-        actual, on_levers = self.coefficients.s.copy(), [lever.force for lever in self.levers]
-        self._prediction.take_second_order_off(length)
-        self.internal_forces(vector)
-        self.coefficients.s[:] = actual
-        for lever, force in zip(self.levers, on_levers, strict=True):
-            lever.force = force
+    def first_order_forces(self, vector: np.ndarray, share: float) -> None:
+        """As `internal_forces`, without the contribution of strains of second order in the correction; see Body."""
+        self._prediction.without_second_order(share)
+        for cells, forces in self._predicted_residual():
+            for lever in self.levers:
+                lever.carry_forces(cells, forces)
+            add_element_vectors(forces, self.element_dofs[cells], vector)
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
         for cells, forces in self._residual():
             for lever in self.levers:
+                lever.keep_force(cells, forces)
                 lever.carry_forces(cells, forces)
             add_element_vectors(forces, self.element_dofs[cells], vector)
 
     def to_charts(self, values: np.ndarray) -> None:
-        """Replace the moments m at the owned nodes by Tᵀ m; see HasRotations."""
+        """Replace the moments m at the owned nodes by Tᵀ m; see Body."""
         mine = (self.rotation_dofs < self.V.dofmap.index_map.size_local).all(axis=1)
         dofs = self.rotation_dofs[mine]
         values[dofs] = np.einsum("nji,nj->ni", self.chart[mine], values[dofs])
@@ -332,8 +335,12 @@ class Rod:
         matrix.setType(PETSc.Mat.Type.AIJ)
         return matrix
 
-    def element_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
-        """The elements' K_l and stiffness of the rotating frame, shape (elements, 14, 14); see OfElements."""
+    def element_tangents(self, share: float | None = None) -> Iterator[tuple[slice, np.ndarray]]:
+        """The elements' K_l and stiffness of the rotating frame, shape (elements, k, k); see Body."""
+        if share is None:
+            np.copyto(self.coefficients.predicted, self.coefficients.s)
+        else:
+            self._prediction.forces_after(share)
         return self._tangent() if not self.levers else self._carried_tangents()
 
     def _carried_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:

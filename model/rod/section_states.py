@@ -69,9 +69,10 @@ class SectionStates:
         for cells, sections in self._blocks:
             start, reached = of_cells(self._start, cells), of_cells(self._trial, cells)
             reached |= {name: np.empty_like(start[name]) for name in self._in_place}
-            strain, size = self._strain.trial[cells], cells.stop - cells.start
+            strain = self._strain.trial[cells]
             if POINTS in self._in_place:
-                sections.update(strain, start, reached, np.empty((size, 2, 6)), np.empty((size, 2, 6, 6)), False)
+                s, D = np.empty(strain.shape), np.empty((*strain.shape, 6))
+                sections.update(strain, start, reached, s, D, False)
             sections.update_surface(strain, start, reached)
             for name in self._in_place:
                 start[name][:] = reached[name]

@@ -59,7 +59,7 @@ class Analysis:
         InputError: if the spring or the material cannot be built.
 
     Attributes:
-        setup: Setup, what the records are about.
+        setup: Setup of the records.
         result: Result up to now.
         system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
@@ -92,15 +92,15 @@ class Analysis:
 
     @property
     def result(self) -> Result:
-        """What is kept of the run up to now."""
+        """Results of the run so far."""
         return self.recorder.result
 
     def snapshot(self, name: str) -> Snapshot:
-        """The spring as it stands, gathered on rank 0; collective."""
+        """The spring in its present state, gathered on rank 0; collective."""
         return self.recorder.snapshot(name)
 
     def _passed(self) -> str | None:
-        """Why the trial state is impossible: the heads have passed each other; collective."""
+        """The reason why the trial state is impossible (the heads have passed each other), or None; collective."""
         height, wire = self.control.trial_height, 2.0 * self.rod.largest_radius
         if height >= wire:
             return None
@@ -259,7 +259,7 @@ class Analysis:
             lambda: (self.control.trial_force, np.ptp(self.layout.gather(x.trial)[[0, -1], 2])),
         )
         if not outcome.converged:
-            log.warning("the initial rate is not known: no equilibrium at the first touch (%s)", outcome.reason)
+            log.warning("the initial rate is unknown: no equilibrium at the first touch (%s)", outcome.reason)
             return math.nan
         return float(force / (before - after))
 

@@ -14,7 +14,7 @@ from coilset.model.case import Case
 from coilset.model.case.heads import DamperSpec, HeadsSpec
 from coilset.model.case.phases import heads_of
 from coilset.model.case.seats import SeatsSpec
-from coilset.model.contact.base import BearsOnWire, Contact
+from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.heads import Heads, Holding
@@ -27,8 +27,9 @@ from coilset.model.equilibrium.system import System
 from coilset.model.manufacture.initial_state import past_warnings
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.record import ContactRecord, ForceLine, Limits, Setup
+from coilset.model.rod.elements import ELEMENTS
 from coilset.model.rod.heat import WireHeat, heat_constants
-from coilset.model.rod.kinematics import GAUSS, chord_triads
+from coilset.model.rod.kinematics import chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.run.coarse_mesh import coarse_mesh_warnings
 from coilset.model.run.effort import Effort, machine_memory
@@ -64,12 +65,14 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     """The wire of a case's spring.
 
     Raises:
-        InputError: if it needs more memory than there is, bends too sharply, or lies outside the law's temperatures.
+        InputError: if it needs more memory than there is, bends too sharply, or is outside the law's temperatures.
     """
+    element = ELEMENTS[case.mesh.element]
     turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
     section, automatic = case.mesh.section, case.solver.control.steps.automatic
     steps = sum(phase.count(automatic) for phase in case.loading)
-    effort = Effort.of(len(turns) - 1, section.points, steps, case.steps_error is not None)
+    points = section.points * len(element.abscissae) // 2  # an effort is that of two sections
+    effort = Effort.of(len(turns) - 1, points, steps, case.steps_error is not None)
     effort.check_memory(machine_memory())
     # before the rod is made, which takes the memory that this needs for a moment
     coarse = coarse_mesh_warnings(spring, turns)
@@ -77,19 +80,28 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
     chords = chord_triads(np.diff(line.stations, axis=0))
     if case.mesh.axis == "chords":
-        placement = chord_placement(spring, turns, chords, GAUSS)
+        placement = chord_placement(spring, turns, chords, element.xi)
     else:
         to_normal = section.kind != "plane" or bool(case.past)
-        placement = section_placement(spring, turns, chords, GAUSS, to_normal)
+        placement = section_placement(spring, turns, chords, element.xi, to_normal)
         refuse_sharp_bends(placement, radius, turns)
     rod = Rod(
-        line, radius, law, section.build(), placement, case.temperature, section.kind, section.degree, Threads(threads)
+        line,
+        radius,
+        law,
+        section.build(),
+        placement,
+        case.temperature,
+        section.kind,
+        section.degree,
+        Threads(threads),
+        element,
     )
     return MeshedWire(turns, radius, placement, rod, (*coarse, *effort.warnings()))
 
 
 def build_heat(case: Case, rod: Rod) -> WireHeat | None:
-    """Heat along the wire, if the case asks for it."""
+    """Heat along the wire, if the case requests it."""
     spec = case.heat
     if spec is None:
         return None
@@ -157,11 +169,10 @@ def build_continuation(
 def build_setup(
     case: Case, spring: Spring, wire: MeshedWire, contacts: Sequence[Contact], coiling_diameter: float | None
 ) -> Setup:
-    """What the records of a run are about."""
+    """Setup of the records of a run."""
     rod, law, least_radius = wire.rod, wire.rod.law, float(wire.radius.min())
     records = tuple(
-        ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
-        for one in contacts
+        ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts
     )
     limits = Limits(
         law.validity.plastic_work, case_strength(case, spring), PENETRATION * 2.0 * least_radius, case.steps_error
@@ -179,6 +190,7 @@ def build_setup(
         rule=rod.rule,
         contacts=records,
         section_kind=case.mesh.section.kind,
+        element=wire.rod.element,
         placement=wire.placement,
         buckling_travel=buckling,
         limits=limits,

@@ -1,4 +1,4 @@
-"""What a run will cost, estimated before it begins from the cost of an element measured in docs/scaling.md."""
+"""Cost of a run, estimated before it begins from the cost of an element measured in docs/scaling.md."""
 
 import os
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a run records: an entry for each step, and the spring at the ends of its phases."""
+"""Records of a run: an entry for each step, and the spring at the ends of its phases."""
 
 import logging
 import math
@@ -31,7 +31,7 @@ class Recorder:
     """Reads the last equilibrium and adds it to the result.
 
     Args:
-        setup: what the records refer to.
+        setup: of the records.
         rod, system, control, stability: of the analysis.
         detailed: record SeatReactions and Frames, too, and log warnings as soon as a step shows them.
 
@@ -53,7 +53,7 @@ class Recorder:
         """Record the unloaded spring and its initial rate, N/mm, NaN if unknown; collective."""
         warnings = self.result.warnings
         if math.isnan(rate):
-            problem = "the initial rate is not known: no equilibrium was found at the first touch"
+            problem = "the initial rate is unknown: no equilibrium was found at the first touch"
             warnings = (*warnings, Warning("initial rate", "start", problem))
         self.result = replace(self.result, rate=rate, snapshots=(self.snapshot("start"),), warnings=warnings)
 
@@ -96,7 +96,7 @@ class Recorder:
         weakest: Weakest | None,
         greatest: float,
     ) -> Step:
-        """The last equilibrium, stations at `x`, with the greatest force so far, N; collective."""
+        """The last equilibrium, stations at `x`, with the maximum force so far, N; collective."""
         height, force, outcome = self.control.height, self.control.force, taken.outcome
         pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
         lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
@@ -134,7 +134,7 @@ class Recorder:
     def _announce(self, before: Result) -> None:
         """Log the warnings that the last step has brought; `before` is the result without it.
 
-        Whether a slender spring has buckled all its eigenvalues tell; what else is new shows in the last two steps.
+        All eigenvalues are needed to detect buckling; other new warnings show in the last two steps.
         """
         if self._warned is None:
             self._warned = {warning.name for warning in step_warnings(self.setup, before)}
@@ -147,7 +147,7 @@ class Recorder:
     def _frame(self, x: np.ndarray) -> Frame:
         """The wire at the last equilibrium, stations at `x`; collective."""
         around = self.setup.inside.shear_around(self.rod.surface_state, self.rod.sections.components)
-        mean = 0.5 * (around[:, 0] + around[:, 1])
+        mean = np.einsum("cga,g->ca", around, self.rod.element.weights)
         return Frame(x, self.rod.line.in_order(mean.astype(np.float32)))
 
     def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:

@@ -15,8 +15,8 @@ SOURCES = Path(__file__).resolve().parents[1]  # all of model
 def keep_by_content() -> None:
     """Give each version of the compiled functions a folder of its own in numba's cache.
 
-    Numba compiles a function anew when its own file changes, but not when one that it calls does, and would go on with
-    what it compiled against the old one.
+    Numba recompiles a function when its own file changes, but not when the file of a function that it calls changes: it
+    would use the machine code with the old one.
     """
     content = hashlib.sha256()
     for path in sorted(SOURCES.rglob("*.py")):
@@ -32,7 +32,7 @@ def keep_by_content() -> None:
 
 
 def load_without_compiler() -> None:
-    """Have numba load what it has compiled without setting up its compiler first, which takes longer than all else.
+    """Load compiled functions without setting up numba's compiler first, which takes longer than the rest.
 
     A version of numba that has no such function, or no such flag, loads as it always does.
     """

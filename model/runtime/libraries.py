@@ -1,4 +1,4 @@
-"""How libraries are loaded: in the order that wheels need, some beside others, and not at all what nobody uses."""
+"""Import order, linking by a second thread, and lazy imports."""
 
 import ctypes
 import os
@@ -16,11 +16,11 @@ UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage", "meshio._c
 """Modules that others import without using them; these take as long to load as all of coilset's own."""
 
 
-class Waiting(ModuleType):
-    """A module that is loaded when something of it is used. Python's own LazyLoader loads at a second import, too."""
+class LazyModule(ModuleType):
+    """A module that is loaded at the first use of an attribute; Python's LazyLoader loads at a second import, too."""
 
     def __getattr__(self, name: str) -> Any:
-        """What is asked for, once the module is loaded; to import it, or to look through all, is no use of it."""
+        """An attribute, once the module is loaded; importing or listing the module does not load it."""
         spec = self.__spec__
         if spec is None or (name.startswith("__") and name not in ("__all__", "__version__")):
             raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
@@ -29,7 +29,7 @@ class Waiting(ModuleType):
         return getattr(self, name)
 
 
-class WhenUsed:
+class LazyFinder:
     """Finder and loader of modules that wait.
 
     Args:
@@ -40,7 +40,7 @@ class WhenUsed:
         self.names = names
 
     def find_spec(self, name: str, path: Any = None, target: ModuleType | None = None) -> ModuleSpec | None:
-        """What the usual finder finds, but with this loader; None for all other modules."""
+        """The usual finder's spec with this loader; None for all other modules."""
         spec = PathFinder.find_spec(name, path) if name in self.names else None
         if spec is not None:
             spec.loader, spec.loader_state = self, spec.loader  # type: ignore[assignment]
@@ -48,16 +48,16 @@ class WhenUsed:
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """An empty one."""
-        return Waiting(spec.name)
+        return LazyModule(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
         """Nothing yet."""
 
 
-def load_when_used() -> None:
-    """Put off what is in UNUSED."""
+def load_lazily() -> None:
+    """Import the modules in UNUSED lazily."""
     if enabled("modules"):
-        sys.meta_path.insert(0, WhenUsed(UNUSED))
+        sys.meta_path.insert(0, LazyFinder(UNUSED))
 
 
 def link_beside(then: Callable[[], object]) -> None:

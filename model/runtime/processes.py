@@ -17,8 +17,8 @@ PR_SET_PDEATHSIG = 1  # of Linux's prctl
 def end_with_parent() -> None:
     """Have the kernel kill this process (SIGKILL) when the one that started it is gone; does nothing but on Linux.
 
-    A process that is killed can tell nobody: whoever it started has to watch for itself. The wish outlives `exec`,
-    and it is the thread that started this process whose end counts.
+    A killed process cannot end the processes that it started, so each has to watch its parent. The setting survives
+    `exec`, and it refers to the thread that started this process.
     """
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)

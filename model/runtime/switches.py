@@ -1,6 +1,6 @@
-"""Switches of what makes a command start faster; the results are the same without it.
+"""Switches of the savings at the start of a command; the results are the same without them.
 
-`COILSET_WITHOUT` names what is left out, separated by commas, or `all`. docs/scaling.md lists what each saves.
+`COILSET_WITHOUT` names the savings to leave out, separated by commas, or `all`. docs/scaling.md lists the time of each.
 """
 
 import os
@@ -12,7 +12,6 @@ SAVINGS = {
     "modules": "modules that libraries import without using them are loaded when something of them is used",
     "linking": "MPI, PETSc and DOLFINx are linked by a second thread",
     "rich": "typer is loaded without rich",
-    "ending": "the process ends without tearing Python down",
 }
 
 

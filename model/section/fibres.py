@@ -3,13 +3,12 @@
 import copy
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.base.kernel import KERNEL, PARALLEL
+from coilset.model.base.kernel import KERNEL
 from coilset.model.material.law.law import Law
 from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.runtime.threads import Threads
@@ -81,9 +80,9 @@ class FibreSections:
         return np.hstack([one.fibres[k] for one in both]), np.hstack([one.shape[k] for one in both])
 
     def initial_state(self) -> dict[str, np.ndarray]:
-        """Unstressed points: `point_state`, shape (cells, 2, points, n_state), and `surface_state` on the surface."""
+        """Unstressed points: `point_state` (cells, sections, points, n_state), and `surface_state` on the surface."""
         row = self.law_over_time.unstressed(3)
-        shape = (len(self.radius), 2)
+        shape = self.placement.stretch.shape
         return {
             "point_state": np.tile(row, (*shape, len(self.y), 1)),
             "surface_state": np.tile(row, (*shape, len(self.rim_y), 1)),
@@ -119,39 +118,36 @@ class FibreSections:
         """Advance all sections to the end of the increment.
 
         Args:
-            strain: ε, γ12, γ13, φ′, κ2, κ3 of the chords, shape (cells, 2, 6).
+            strain: ε, γ12, γ13, φ′, κ2, κ3 of the chords, shape (cells, sections, 6).
             start: state at the last equilibrium, with its `strain`; not changed.
             trial: state at the end of the increment; written.
-            s: written, resultants about the chords, shape (cells, 2, 6), N and N mm.
-            D: written, ds/de, shape (cells, 2, 6, 6), if `with_tangent`.
+            s: written, resultants about the chords, shape (cells, sections, 6), N and N mm.
+            D: written, ds/de, shape (cells, sections, 6, 6), if `with_tangent`.
 
         Returns:
             False if the law found no solution at some point or the strains are not finite.
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
-        return bool(
-            self.threads.run(
-                update_sections,
-                update_in_parts,
-                len(self.radius),
-                2 * len(self.y),
-                law,
-                tuple(self.ground),
-                self.y,
-                self.z,
-                self.weights,
-                self.radius,
-                place.curvature,
-                self.curved,
-                self._increment(strain, start, trial),
-                place.matrices,
-                place.stretch,
-                start["point_state"],
-                trial["point_state"],
-                s,
-                D,
-                with_tangent,
-            )
+        return self.threads.run(
+            update_sections,
+            len(self.radius),
+            self.placement.stretch.shape[1] * len(self.y),
+            law,
+            tuple(self.ground),
+            self.y,
+            self.z,
+            self.weights,
+            self.radius,
+            place.curvature,
+            self.curved,
+            self._increment(strain, start, trial),
+            place.matrices,
+            place.stretch,
+            start["point_state"],
+            trial["point_state"],
+            s,
+            D,
+            with_tangent,
         )
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
@@ -162,9 +158,8 @@ class FibreSections:
         place, law = self.placement, self.law_over_time.over(start, trial)
         self.threads.run(
             update_surface,
-            update_surface_in_parts,
             len(self.radius),
-            2 * len(self.rim_y),
+            self.placement.stretch.shape[1] * len(self.rim_y),
             law,
             tuple(self.ground_rim),
             self.rim_y,
@@ -176,19 +171,11 @@ class FibreSections:
             place.matrices,
             start["surface_state"],
             trial["surface_state"],
+            False,
         )
 
 
-@njit(**PARALLEL)
-def update_in_parts(ends: np.ndarray, p: Any, ground: Any, *rest: Any) -> bool:
-    """`update_sections` for all parts of the cells side by side."""
-    good = np.empty(len(ends) - 1, np.bool_)
-    for k in prange(len(good)):
-        good[k] = update_sections(ends, np.int64(k), p, ground, *rest)
-    return bool(good.all())
-
-
-@njit(**KERNEL)
+@njit(**KERNEL, nogil=True)
 def update_sections(
     ends: np.ndarray,
     part: int,
@@ -221,14 +208,14 @@ def update_sections(
         ground: entries of Ground; as plain tuples they take numba 25 µs less.
         y, z, w: points of the unit disk and weights, shape (points,).
         radius: wire radius of each element, shape (cells,), mm.
-        curvature: κ of the wire, towards y, shape (cells, 2), 1/mm; curved: is it known to the sections?
-        de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
-        placement: shape (cells, 2, 6, 6), stretch: ds/dx, shape (cells, 2).
-        old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
+        curvature: κ of the wire, towards y, shape (cells, sections), 1/mm; curved: is it known to the sections?
+        de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, sections, 6).
+        placement: shape (cells, sections, 6, 6), stretch: ds/dx, shape (cells, sections).
+        old: state at the last equilibrium, shape (cells, sections, points, n_state); not changed.
         new: written, the state at the end of the increment; of the last section only, in the place of the part, if it
             has not room for all.
-        s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, 2, 6), about the chord axis.
-        D: written if `with_tangent`, section tangent ds/de, shape (cells, 2, 6, 6).
+        s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, sections, 6), about the chord axis.
+        D: written if `with_tangent`, section tangent ds/de, shape (cells, sections, 6, 6).
 
     Returns:
         False if the law found no solution at some point or the strains are no numbers: then the step must be cut.
@@ -244,7 +231,7 @@ def update_sections(
         if last != R:
             last = R
             round_fibres(y, z, w, R, disk)
-        for g in range(2):
+        for g in range(de.shape[1]):
             to_section(placement[c, g], de[c, g], d)
             fibres, shape = disk, disk_shape
             if cut[c, g] >= 0:
@@ -260,14 +247,7 @@ def update_sections(
     return True
 
 
-@njit(**PARALLEL)
-def update_surface_in_parts(ends: np.ndarray, p: Any, ground: Any, *rest: Any) -> None:
-    """`update_surface` for all parts of the cells side by side."""
-    for k in prange(len(ends) - 1):
-        update_surface(ends, np.int64(k), p, ground, *rest)
-
-
-@njit(**KERNEL)
+@njit(**KERNEL, nogil=True)
 def update_surface(
     ends: np.ndarray,
     part: int,
@@ -282,8 +262,12 @@ def update_surface(
     placement: np.ndarray,
     old: np.ndarray,
     new: np.ndarray,
+    with_tangent: bool,
 ) -> None:
-    """Bring points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
+    """Bring points y, z of the unit circle to the end of the increment; arguments as in `update_sections`.
+
+    `with_tangent` is False, and no constant, for which numba would compile the law once more.
+    """
     points, (cut, cut_fibres, cut_shape) = len(y), ground
     d, weightless = np.empty(6), np.zeros(len(y))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
@@ -292,14 +276,14 @@ def update_surface(
     for c in range(ends[part], ends[part + 1]):
         R = radius[c]
         round_fibres(y, z, weightless, R, disk)
-        for g in range(2):
+        for g in range(de.shape[1]):
             to_section(placement[c, g], de[c, g], d)
             fibres, shape = disk, disk_shape
             if cut[c, g] >= 0:
                 fibres, shape = cut_fibres[cut[c, g]], cut_shape[cut[c, g]]
             elif curved:
                 curved_shape(y, z, curvature[c, g] * R, disk_shape)
-            update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, False, count)
+            update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count)
             spoil_failed(count, new[c, g])
 
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.section.integration import FIBRES
+from coilset.model.section.outline import WHOLE, Segment
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.segment import WHOLE, Segment
 from coilset.model.section.shape import SHAPE
 
 
@@ -17,7 +17,7 @@ class Ground(NamedTuple):
     """The cut sections of a rod.
 
     Attributes:
-        which: number of each section among them, −1 if it is whole, shape (cells, 2).
+        which: number of each section among them, −1 if it is whole, shape (cells, sections).
         fibres: y, z, u, v of the points, mm, and their areas, mm², see `integration`; shape (cut sections, 5, points).
         shape: g, a22, a23, a32, a33, see `shape`; shape (cut sections, 5, points).
     """
@@ -40,7 +40,7 @@ def segments(placement: Placement) -> tuple[np.ndarray, list[Segment]]:
 
 
 def section_points(rule: DiskRule, placement: Placement) -> tuple[np.ndarray, np.ndarray]:
-    """Points of all sections in wire radii, shape (n, 2, points, 2), and their shares of the disk, (n, 2, points)."""
+    """Points of all sections in wire radii, (n, g, points, 2), and their shares of the disk, (n, g, points)."""
     which, cut = segments(placement)
     places = np.broadcast_to(rule.points, (*which.shape, *rule.points.shape)).copy()
     weights = np.broadcast_to(rule.weights, (*which.shape, len(rule))).copy()

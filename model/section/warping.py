@@ -18,13 +18,11 @@ of the state at the last equilibrium and of the strains, whatever was tried in b
 import copy
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.base.kernel import PARALLEL
 from coilset.model.material.law.law import Law
 from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.material.point_law import solid_point
@@ -99,10 +97,11 @@ class WarpingSections:
     def initial_state(self) -> dict[str, np.ndarray]:
         """Unstressed points, `point_state` and `surface_state` as in `FibreSections`, and the warping.
 
-        `warping` are the a, shape (cells, 2, unknowns), and `warping_slope` is da/de, shape (cells, 2, unknowns, 6).
+        `warping` are the a, shape (cells, sections, unknowns), and `warping_slope` is da/de, shape (cells, sections,
+        unknowns, 6).
         """
         row = self.law_over_time.unstressed(6)
-        shape = (len(self.radius), 2)
+        shape = self.placement.stretch.shape
         return {
             "point_state": np.tile(row, (*shape, self.weights.shape[1], 1)),
             "surface_state": np.tile(row, (*shape, self.rim[0].shape[1], 1)),
@@ -121,32 +120,29 @@ class WarpingSections:
     ) -> bool:
         """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent."""
         place, law = self.placement, self.law_over_time.over(start, trial)
-        return bool(
-            self.threads.run(
-                update_sections,
-                update_in_parts,
-                len(self.radius),
-                2 * self.weights.shape[1],
-                law,
-                self.which,
-                *self.points,
-                self.weights,
-                self.radius,
-                place.curvature,
-                place.torsion,
-                strain - start["strain"],
-                place.matrices,
-                place.stretch,
-                start["point_state"],
-                start["warping"],
-                start["warping_slope"],
-                trial["point_state"],
-                trial["warping"],
-                trial["warping_slope"],
-                s,
-                D,
-                self.iterations,
-            )
+        return self.threads.run(
+            update_sections,
+            len(self.radius),
+            self.placement.stretch.shape[1] * self.weights.shape[1],
+            law,
+            self.which,
+            *self.points,
+            self.weights,
+            self.radius,
+            place.curvature,
+            place.torsion,
+            strain - start["strain"],
+            place.matrices,
+            place.stretch,
+            start["point_state"],
+            start["warping"],
+            start["warping_slope"],
+            trial["point_state"],
+            trial["warping"],
+            trial["warping_slope"],
+            s,
+            D,
+            self.iterations,
         )
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
@@ -154,9 +150,8 @@ class WarpingSections:
         place, law = self.placement, self.law_over_time.over(start, trial)
         self.threads.run(
             update_surface,
-            update_surface_in_parts,
             len(self.radius),
-            2 * self.rim[0].shape[1],
+            self.placement.stretch.shape[1] * self.rim[0].shape[1],
             law,
             self.which,
             *self.rim,
@@ -177,16 +172,7 @@ def _with_polynomials(points: Sequence[np.ndarray], bases: Sequence[Basis]) -> t
     return y, z, np.array([basis(one) for basis, one in zip(bases, points, strict=True)])
 
 
-@njit(**PARALLEL)
-def update_in_parts(ends: np.ndarray, p: Any, *rest: Any) -> bool:
-    """`update_sections` for all parts of the cells side by side."""
-    good = np.empty(len(ends) - 1, np.bool_)
-    for k in prange(len(good)):
-        good[k] = update_sections(ends, np.int64(k), p, *rest)
-    return bool(good.all())
-
-
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def update_sections(
     ends: np.ndarray,
     part: int,
@@ -217,13 +203,13 @@ def update_sections(
     Args:
         ends, part: as in `fibres.update_sections`.
         p: parameters of the material law.
-        which: number of each section among the ground ones, −1 if it is whole, shape (cells, 2).
+        which: number of each section among the ground ones, −1 if it is whole, shape (cells, sections).
         y, z, f, w: points, polynomials and weights, first of the unit disk and then of each ground section.
-        radius, curvature, torsion: of the wire, shape (cells,), (cells, 2), (cells, 2), mm and 1/mm.
+        radius, curvature, torsion: of the wire, shape (cells,), (cells, sections), (cells, sections), mm and 1/mm.
         de, placement, stretch, s, D: as in `fibres.update_sections`.
         old, old_a, old_slope: state of the points with all six stresses, warping, and its slope da/de in the section's
-            own strains, at the last equilibrium, shapes (cells, 2, points, n_state), (cells, 2, unknowns) and
-            (cells, 2, unknowns, 6); not changed.
+            own strains, at the last equilibrium, shapes (cells, sections, points, n_state), (cells, sections, unknowns)
+            and (cells, sections, unknowns, 6); not changed.
         new, a, slope: written, the same at the end of the increment.
         count: sections and local iterations are added to the row of the part, shape (parts, 2).
 
@@ -239,7 +225,7 @@ def update_sections(
     resultant, tangent, work = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
     for c in range(ends[part], ends[part + 1]):
         R = radius[c]
-        for g in range(2):
+        for g in range(de.shape[1]):
             P, i = placement[c, g], which[c, g] + 1
             strain_operator(y[i], z[i], f[i], R, curvature[c, g], torsion[c, g], B)
             for k in range(points):
@@ -267,14 +253,7 @@ def update_sections(
     return True
 
 
-@njit(**PARALLEL)
-def update_surface_in_parts(ends: np.ndarray, p: Any, *rest: Any) -> None:
-    """`update_surface` for all parts of the cells side by side."""
-    for k in prange(len(ends) - 1):
-        update_surface(ends, np.int64(k), p, *rest)
-
-
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def update_surface(
     ends: np.ndarray,
     part: int,
@@ -297,7 +276,7 @@ def update_surface(
     B, C = np.zeros((y.shape[1], 6, 6 + n)), np.empty((6, 6))
     e, strain = np.empty(6), np.empty(6)
     for c in range(ends[part], ends[part + 1]):
-        for g in range(2):
+        for g in range(de.shape[1]):
             i = which[c, g] + 1
             strain_operator(y[i], z[i], f[i], radius[c], curvature[c, g], torsion[c, g], B)
             to_section(placement[c, g], de[c, g], e)

@@ -8,7 +8,7 @@ import numpy as np
 from coilset.model.contact.base import one_sided
 from coilset.model.slice.boundary import Boundary
 from coilset.model.slice.forms import RISE, TURN
-from coilset.model.slice.gap import gaps
+from coilset.model.slice.gap import Gaps, Sides, gaps
 from coilset.model.slice.slice import Slice
 
 STIFFNESS = 10.0  # default stiffness of the bedding over E/d: as stiff as the triangles at the surface
@@ -23,7 +23,7 @@ class Pressure:
 
     Attributes:
         gap: smallest gap, also of corners, mm.
-        free: smallest gap of the points that can bear, mm.
+        free: smallest gap of the points that can be in contact, mm.
         bearing: number of points in contact.
         force: pressure times area of all points, per turn of wire, N.
         forces: on the displacements, shape (blocks, 3), N; numbers: on h̄ and λ, shape (2,), N and N mm.
@@ -93,8 +93,13 @@ class SelfContact:
         at_corners = edges.corners(body.forms.V.tabulate_dof_coordinates()[:, :2])
         self._corners = [np.intersect1d(found, self._above) for found in at_corners]
         points, size = self._areas.size, 6 * edges.blocks.shape[1] + 1
-        self._gap, self._where = np.empty(self._areas.shape), np.empty((points, 3), np.int64)
-        self._gradient, self._hessian = np.empty((points, size)), np.empty((points, size, size))
+        self._sides = Sides(edges.blocks, edges.polynomials, self._above, self._below)
+        self._gaps = Gaps(
+            np.empty(self._areas.shape),
+            np.empty((points, 3), np.int64),
+            np.empty((points, size)),
+            np.empty((points, size, size)),
+        )
 
     def _points_areas(self, weights: np.ndarray) -> np.ndarray:
         """Surface of the unloaded wire that each point represents, per radian, mm²."""
@@ -108,24 +113,12 @@ class SelfContact:
 
     def _corner_gap(self, κ: float) -> float:
         """Smallest gap of the corners on the upper side, which no Gauss point sees, mm; infinite without corners."""
-        edges, smallest = self._edges, np.inf
+        smallest = np.inf
         for above, t in zip(self._corners, (1.0, 0.0), strict=True):
             if len(above):
                 gap = np.empty((len(above), 1))
-                gaps(
-                    self.body.x,
-                    κ,
-                    edges.blocks,
-                    edges.polynomials,
-                    above,
-                    self._below,
-                    np.array([t]),
-                    -np.inf,
-                    gap,
-                    self._where,
-                    self._gradient,
-                    self._hessian,
-                )
+                sides, out = self._sides._replace(above=above), self._gaps._replace(gap=gap)
+                gaps(self.body.x, κ, sides, np.array([t]), -np.inf, out)
                 smallest = min(smallest, float(gap.min()))
         return smallest
 
@@ -133,23 +126,11 @@ class SelfContact:
         """Forces and stiffness at the body's increment."""
         body, edges = self.body, self._edges
         h, λ, x = body.rise, body.turn, body.x
-        count = gaps(
-            x,
-            h / λ,
-            edges.blocks,
-            edges.polynomials,
-            self._above,
-            self._below,
-            self._gauss,
-            0.0,
-            self._gap,
-            self._where,
-            self._gradient,
-            self._hessian,
-        )
-        a, k, b = self._where[:count].T
-        gradient, hessian = self._gradient[:count], self._hessian[:count]
-        pressure, slope = one_sided(self._gap[a, k], self.stiffness * self._areas[a, k], self.onset)
+        found = self._gaps
+        count = gaps(x, h / λ, self._sides, self._gauss, 0.0, found)
+        a, k, b = found.where[:count].T
+        gradient, hessian = found.gradient[:count], found.hessian[:count]
+        pressure, slope = one_sided(found.gap[a, k], self.stiffness * self._areas[a, k], self.onset)
         load = -pressure[:, None] * gradient
         K = slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :] - pressure[:, None, None] * hessian
         # κ = h̄/λ: its contribution goes to both numbers
@@ -164,7 +145,7 @@ class SelfContact:
         dofs = np.hstack([dofs, np.tile(x.size + np.array([RISE, TURN]), (count, 1))])
         forces = np.bincount(dofs.ravel(), (load @ onto).ravel(), x.size + 2)
         i, j = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
-        free = float(self._gap.min())
+        free = float(found.gap.min())
         return Pressure(
             min(free, self._corner_gap(h / λ)),
             free,

@@ -10,12 +10,62 @@ point P of this one, n the outward normal of the next coil there and τ its tang
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 SAMPLES = 4  # intervals of an edge in the search for the closest point
 ITERATIONS = 12
+
+
+class Sides(NamedTuple):
+    """The sides of a coil that may touch.
+
+    Attributes:
+        edges, polynomials: of `Boundary`.
+        above, below: indices of its edges on the upper and on the lower side.
+    """
+
+    edges: np.ndarray
+    polynomials: np.ndarray
+    above: np.ndarray
+    below: np.ndarray
+
+
+class Gaps(NamedTuple):
+    """Gaps of Gauss points on the upper side to the next coil, and derivatives of those below a limit.
+
+    Attributes:
+        gap: shape (edges above, points), mm.
+        where: of gaps below the limit, edge above, point and edge below, shape (edges above × points, 3).
+        gradient, hessian: of the same gaps, by the nodes of the edge above, of the edge below, and by κ.
+    """
+
+    gap: np.ndarray
+    where: np.ndarray
+    gradient: np.ndarray
+    hessian: np.ndarray
+
+
+class Point(NamedTuple):
+    """Work arrays for a point of an edge.
+
+    Attributes:
+        N: shape functions and their first and second derivatives, shape (3, nodes).
+        X: position and its derivatives along the edge, shape (3, 3).
+        m, D, H: m(X), its first and second derivatives, shapes (2,), (2, 3) and (2, 3, 3).
+        turned: θ with its derivatives, shape (4,).
+        C: C, C′ and C″, shape (3, 2).
+    """
+
+    N: np.ndarray
+    X: np.ndarray
+    m: np.ndarray
+    D: np.ndarray
+    H: np.ndarray
+    turned: np.ndarray
+    C: np.ndarray
 
 
 @njit(cache=True)
@@ -42,13 +92,14 @@ def place(x: np.ndarray, edge: np.ndarray, N: np.ndarray, X: np.ndarray) -> None
 
 
 @njit(cache=True)
-def meridian(X: np.ndarray, κ: float, m: np.ndarray, D: np.ndarray, H: np.ndarray, turned: np.ndarray) -> None:
-    """Write m(X), its first and second derivatives (2 × 3 and 2 × 3 × 3), and θ with its derivatives (4)."""
-    x, y = X[0], X[1]
+def meridian(κ: float, point: Point) -> None:
+    """Write m(X), its first and second derivatives, and θ with its derivatives."""
+    _, X, m, D, H, turned, _ = point
+    x, y = X[0, 0], X[0, 1]
     r2 = x * x + y * y
     r, θ = math.sqrt(r2), math.atan2(y, x)
     turned[0], turned[1], turned[2], turned[3] = θ, -y / r2, x / r2, 0.0
-    m[0], m[1] = r, X[2] - κ * θ
+    m[0], m[1] = r, X[0, 2] - κ * θ
     D[0, 0], D[0, 1], D[0, 2] = x / r, y / r, 0.0
     D[1, 0], D[1, 1], D[1, 2] = κ * y / r2, -κ * x / r2, 1.0
     H[:] = 0.0
@@ -58,24 +109,12 @@ def meridian(X: np.ndarray, κ: float, m: np.ndarray, D: np.ndarray, H: np.ndarr
 
 
 @njit(cache=True)
-def curve(
-    x: np.ndarray,
-    edge: np.ndarray,
-    polynomials: np.ndarray,
-    κ: float,
-    t: float,
-    N: np.ndarray,
-    X: np.ndarray,
-    m: np.ndarray,
-    D: np.ndarray,
-    H: np.ndarray,
-    turned: np.ndarray,
-    C: np.ndarray,
-) -> None:
-    """Write C, C′ and C″ of an edge of the next coil, shape (3, 2), raised by its pitch."""
+def curve(x: np.ndarray, edge: np.ndarray, polynomials: np.ndarray, κ: float, t: float, point: Point) -> None:
+    """Write C, C′ and C″ of an edge of the next coil, raised by its pitch, and what leads to them."""
+    N, X, m, D, H, _, C = point
     shape(polynomials, t, N)
     place(x, edge, N, X)
-    meridian(X[0], κ, m, D, H, turned)
+    meridian(κ, point)
     for k in range(2):
         C[0, k], C[1, k], C[2, k] = m[k], 0.0, 0.0
         for i in range(3):
@@ -88,25 +127,21 @@ def curve(
 
 @njit(cache=True)
 def closest(
-    x: np.ndarray,
-    edges: np.ndarray,
-    below: np.ndarray,
-    polynomials: np.ndarray,
-    κ: float,
-    p: np.ndarray,
-    room: tuple[np.ndarray, ...],
-    start: np.ndarray,
+    x: np.ndarray, sides: Sides, κ: float, p: np.ndarray, start: np.ndarray, point: Point
 ) -> tuple[int, float, bool]:
     """Edge (an index into `below`) and t of the point on the next coil's lower side closest to p in the half plane.
 
     Args:
+        x, sides, κ: as in `gaps`.
+        p: r and z − κθ of the point, shape (2,), mm.
         start: positions of the samples on every edge, shape (edges of `below`, SAMPLES + 1, 2).
-        room: work arrays for `curve`.
+        point: written.
 
     Returns:
-        Index into `below`, t, and whether the point lies inside its edge.
+        Index into `below`, t, and whether the point is inside its edge.
     """
-    N, X, m, D, H, turned, C = room
+    edges, polynomials, _, below = sides
+    C = point.C
     best, number, t = math.inf, 0, 0.0
     for e in range(len(below)):
         for k in range(SAMPLES + 1):
@@ -117,7 +152,7 @@ def closest(
     for attempt in range(2):
         edge = edges[below[number]]
         for _ in range(ITERATIONS):
-            curve(x, edge, polynomials, κ, t, N, X, m, D, H, turned, C)
+            curve(x, edge, polynomials, κ, t, point)
             q0, q1 = p[0] - C[0, 0], p[1] - C[0, 1]
             slope = -(q0 * C[1, 0] + q1 * C[1, 1])
             length = C[1, 0] ** 2 + C[1, 1] ** 2
@@ -143,38 +178,10 @@ def closest(
 
 
 @njit(cache=True)
-def gaps(
-    x: np.ndarray,
-    κ: float,
-    edges: np.ndarray,
-    polynomials: np.ndarray,
-    above: np.ndarray,
-    below: np.ndarray,
-    gauss: np.ndarray,
-    limit: float,
-    gap: np.ndarray,
-    where: np.ndarray,
-    gradient: np.ndarray,
-    hessian: np.ndarray,
-) -> int:
-    """Gaps of Gauss points on the upper side to the next coil, and derivatives of those below a limit.
-
-    Args:
-        x: positions of the nodes, shape (blocks, 3), mm; κ: h̄/λ, mm/rad.
-        edges, polynomials: of `Boundary`; above, below: indices of its edges on the upper and on the lower side.
-        gauss: t of the Gauss points on the edges above, shape (points,).
-        limit: gap below which derivatives are computed, mm.
-        gap: written, shape (edges above, points), mm.
-        where: written for gaps below the limit, edge above, point and edge below, shape (edges above × points, 3).
-        gradient, hessian: written for the same gaps, by the nodes of the edge above, of the edge below, and by κ.
-
-    Returns:
-        Number of gaps with derivatives.
-    """
-    n = edges.shape[1]
-    size, count = 6 * n + 1, 0
-    room = (
-        np.empty((3, n)),
+def room(nodes: int) -> Point:
+    """Work arrays for edges of so many nodes, not yet written."""
+    return Point(
+        np.empty((3, nodes)),
         np.empty((3, 3)),
         np.empty(2),
         np.empty((2, 3)),
@@ -182,22 +189,42 @@ def gaps(
         np.empty(4),
         np.empty((3, 2)),
     )
-    N, X, m, D, H, turned, C = room
+
+
+@njit(cache=True)
+def gaps(x: np.ndarray, κ: float, sides: Sides, gauss: np.ndarray, limit: float, out: Gaps) -> int:
+    """Gaps of Gauss points on the upper side to the next coil, and derivatives of those below a limit.
+
+    Args:
+        x: positions of the nodes, shape (blocks, 3), mm.
+        κ: h̄/λ, mm/rad.
+        sides: of the coil.
+        gauss: t of the Gauss points on the edges above, shape (points,).
+        limit: gap below which derivatives are computed, mm.
+        out: written.
+
+    Returns:
+        Number of gaps with derivatives.
+    """
+    (edges, polynomials, above, below), (gap, where, gradient, hessian) = sides, out
+    n = edges.shape[1]
+    size, count = 6 * n + 1, 0
+    there, here = room(n), room(n)  # on the next coil, and on this one
+    _, X, _, D, H, turned, C = there
+    N, (M, Y, p, Dp, Hp, turned_p, _) = there.N, here
     start = np.empty((len(below), SAMPLES + 1, 2))
     for e in range(len(below)):
         for k in range(SAMPLES + 1):
-            curve(x, edges[below[e]], polynomials, κ, k / SAMPLES, N, X, m, D, H, turned, C)
+            curve(x, edges[below[e]], polynomials, κ, k / SAMPLES, there)
             start[e, k] = C[0]
-    M, Y, p = np.empty((3, n)), np.empty((3, 3)), np.empty(2)
-    Dp, Hp, turned_p = np.empty((2, 3)), np.empty((2, 3, 3)), np.empty(4)
     q, dC, s = np.empty((size, 2)), np.empty((size, 2)), np.empty(size)
     for a in range(len(above)):
         for k in range(len(gauss)):
             shape(polynomials, gauss[k], M)
             place(x, edges[above[a]], M, Y)
-            meridian(Y[0], κ, p, Dp, Hp, turned_p)
-            number, t, inside = closest(x, edges, below, polynomials, κ, p, room, start)
-            curve(x, edges[below[number]], polynomials, κ, t, N, X, m, D, H, turned, C)
+            meridian(κ, here)
+            number, t, inside = closest(x, sides, κ, p, start, there)
+            curve(x, edges[below[number]], polynomials, κ, t, there)
             length = math.hypot(C[1, 0], C[1, 1])
             τ0, τ1 = C[1, 0] / length, C[1, 1] / length
             n0, n1 = τ1, -τ0

@@ -9,6 +9,7 @@ from dolfinx.fem.petsc import assemble_matrix, create_matrix
 from petsc4py import PETSc
 
 from coilset.meshes.solid import SolidMesh
+from coilset.model.body.body import Body
 from coilset.model.body.state import State, Where
 from coilset.model.solid.configuration import Configuration
 from coilset.model.solid.forms import SolidForms
@@ -30,7 +31,7 @@ class PointLaw(Protocol):
         ...
 
 
-class Solid:
+class Solid(Body):
     """A wire as a 3D body, updated Lagrange: increments start at the last equilibrium, forms use the current mesh.
 
     Args:
@@ -85,9 +86,6 @@ class Solid:
         self.seconds["points"] += time.perf_counter() - began
         return good
 
-    def follow(self) -> None:
-        """Nothing to do: all of a solid carries load; see Body."""
-
     def _update_chunk(self, first: int) -> bool:
         cells = slice(first, min(first + CHUNK, self.n_cells))
         gradient = self.forms.evaluate_gradient(np.arange(cells.start, cells.stop))
@@ -116,7 +114,7 @@ class Solid:
         return create_matrix(self.forms.tangent)
 
     def tangent(self, matrix: PETSc.Mat) -> None:
-        """Add the material and the initial-stress part; see FillsMatrix."""
+        """Add the material and the initial-stress part; see Body."""
         began = time.perf_counter()
         assemble_matrix(matrix, self.forms.tangent)
         self.seconds["assembly"] += time.perf_counter() - began
@@ -127,7 +125,7 @@ class Solid:
         return 1.0
 
     def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
-        """Rows and columns of prescribed increments, so that the matrix stays symmetric; see FillsMatrix.
+        """Rows and columns of prescribed increments, so that the matrix stays symmetric; see Body.
 
         Increments used with this matrix satisfy the prescribed values from the start, see `HeadPredictor`.
         """

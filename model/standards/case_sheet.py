@@ -36,7 +36,7 @@ def case_sheet(
 
     Raises:
         InputError: a spring that is not cylindrical, an unknown wire, a length that the spring cannot have, or a
-            temperature that the material does not know.
+            temperature outside the material's table.
     """
     law, cylinder = case_law(case, spring), Cylinder.of(spring)
     named = wire_name or getattr(case.material, "wire", None)

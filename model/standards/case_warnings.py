@@ -59,7 +59,7 @@ def _supports(case: Case, spring: Spring) -> Iterator[Warning]:
             yield Warning("support", "ends", message)
         elif case.ends == "seats" and case.seats.hold == "groove" and not end.is_closed:
             message = (
-                f"the {name} end is open, but a groove supports an end coil that lies on its seat; "
+                f"the {name} end is open, but a groove supports an end coil that rests on its seat; "
                 "give closed end_coils, or seats: {hold: tips}"
             )
             yield Warning("support", "seats.hold", message)

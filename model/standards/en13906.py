@@ -42,7 +42,7 @@ def stress(force: float, d: float, D: float) -> float:
 def stress_correction(w: float) -> float:
     """Stress correction k = (w + 0.5)/(w − 0.75) for the curvature of the wire and the direct shear (Bergsträsser).
 
-    τk = k τ is the stress at the inside of the coil. The factors of Wahl and of Göhner lie within 2 % for w of 4 to 20.
+    τk = k τ is the stress at the inside of the coil. The factors of Wahl and of Göhner agree to 2 % for w of 4 to 20.
     """
     return (w + 0.5) / (w - 0.75)
 

@@ -1,4 +1,4 @@
-"""What a results folder contains about the quantities that the formulas give."""
+"""Quantities of the formulas as found in a results folder."""
 
 import csv
 import json
@@ -20,7 +20,7 @@ ROUNDING = 1e-9  # of the free length: a height that is nearer to a length is th
 
 @dataclass(frozen=True)
 class Found:
-    """Numbers of a run, N, mm, MPa; None for what the run did not reach.
+    """Numbers of a run, N, mm, MPa; None where the run did not reach it.
 
     Attributes:
         summary: summary.json.
@@ -28,7 +28,7 @@ class Found:
         residual: shear stress about the wire's axis in the released spring, mean over the outermost ring of section
             points and over the middle half of the turns; negative if it opposes the load's stress.
         ring: radius of that ring over the wire's radius.
-        growth: of the mean diameter at the least height of a snapshot, over whole turns, about the middle half, mm.
+        growth: of the mean diameter at the minimum height of a snapshot, over whole turns, about the middle half, mm.
     """
 
     summary: dict[str, Any]

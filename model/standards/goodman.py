@@ -1,4 +1,4 @@
-"""Goodman diagram of a wire: the upper corrected stress that it endures for a given lower one."""
+"""Goodman diagram of a wire: the permissible upper corrected stress for a given lower one."""
 
 from dataclasses import dataclass
 from math import log10
@@ -25,11 +25,11 @@ class Line:
         return f"10{str(power).translate(SUPERSCRIPT)}" if 10.0**power == self.cycles else f"{self.cycles:g}"
 
     def upper(self, lower: float) -> float:
-        """Upper stress endured for a lower one; the line extends below zero."""
+        """Permissible upper stress for a lower one; the line extends below zero."""
         return min(self.at_zero + (self.limit - self.at_zero) * lower / self.knee, self.limit)
 
     def stress_range(self, lower: float) -> float:
-        """Stress range endured above a lower stress; 0 if the lower stress is above the limit."""
+        """Permissible stress range above a lower stress; 0 if the lower stress is above the limit."""
         return max(self.upper(lower) - lower, 0.0)
 
 

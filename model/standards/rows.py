@@ -19,7 +19,7 @@ class Row:
     """A line of the sheet.
 
     Attributes:
-        label, unit: what it is.
+        label, unit: of the quantity.
         value: by the formula; None if there is none, for the reason in `why`.
         formula: in the symbols of the standard.
         sure: how the formula or number was checked.
@@ -140,8 +140,8 @@ def _why_block(sheet: Sheet) -> str:
         return ""
     first = sheet.yield_stress / sqrt(3)
     if sheet.stress(sheet.spring.solid) <= first:
-        return "coils that lie down before block raise it"
-    return f"plastic flow lowers it, τc is above the first yield of {first:.4g} MPa; coils that lie down raise it"
+        return "coils that close before block raise it"
+    return f"plastic flow lowers it, τc is above the first yield of {first:.4g} MPa; coils that close raise it"
 
 
 def _stresses(sheet: Sheet) -> Iterator[Row]:

@@ -1,4 +1,4 @@
-"""What a spring maker would warn about, each warning with its numbers; nothing here rejects a spring."""
+"""Warnings of a spring maker, each with its numbers; nothing here rejects a spring."""
 
 from collections.abc import Iterator
 

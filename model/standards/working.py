@@ -1,4 +1,4 @@
-"""What a spring maker would warn about at the working lengths and in presetting; see `warnings` for the spring."""
+"""Warnings of a spring maker about working lengths and presetting; see `warnings` for the spring."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -65,7 +65,7 @@ def stress_warnings(made: "Sheet", lengths: Sequence[float], wire: Wire) -> list
 
 
 def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:
-    """A cycle of corrected stresses whose range exceeds what the wire endures above its lower stress."""
+    """A cycle of corrected stresses whose range exceeds the permissible one above its lower stress."""
     spread, allowed = cycle.upper - cycle.lower, endured.stress_range(cycle.lower)
     if spread <= allowed:
         return []

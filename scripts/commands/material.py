@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from coilset.model.base.errors import InputError, naming
 from coilset.scripts.compiling import announce_compiling
-from coilset.scripts.plain import typer
+from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target, results_folder
 
 if TYPE_CHECKING:  # commands load what they need
@@ -118,7 +118,7 @@ def fit(
         help="fit the second branch of k², which the tests must reach [default: not for tension tests alone]",
     ),
     back_stresses: int | None = typer.Option(
-        None, "--back-stresses", help="fit so many back stresses (Chaboche), 1 to 4, to cyclic tension or torsion"
+        None, "--back-stresses", help="number of back stresses (Chaboche), 1 to 4, to fit to cyclic tension or torsion"
     ),
     engineering: bool = typer.Option(False, "--engineering", help="tension tests have engineering strain and stress"),
     name: str = typer.Option("fitted", help="name of the material"),
@@ -158,9 +158,9 @@ def fit(
 
 
 def _say_what_is_told(fit: "CyclicFit", console: "Console") -> None:
-    """What the tests do not tell of back stresses."""
+    """Back stresses that the tests do not determine."""
     if fit.doubtful:
-        console.print(f"the tests hardly tell {', '.join(fit.doubtful)}")
+        console.print(f"the tests hardly determine {', '.join(fit.doubtful)}")
     if fit.enough < fit.terms:
         console.print(f"{fit.enough} back stress{'es' * (fit.enough > 1)} would do: the others are within the scatter")
 

@@ -17,7 +17,7 @@ from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
 from coilset.model.runtime.threads import usual
 from coilset.scripts.terminal.console import Console
-from coilset.scripts.terminal.step_words import quantity, without_minus
+from coilset.scripts.terminal.progress import quantity, without_minus
 from coilset.scripts.terminal.target import results_folder
 
 
@@ -33,10 +33,10 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
     folder = results_folder(out, Path(file).stem)
     refuse_results(folder, force)
 
-    def told(name: str, step: Step) -> None:
+    def report(name: str, step: Step) -> None:
         console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{without_minus(step.force_N, 3):>14} N")
 
-    pressed = press(wanted, told, threads or usual(1))
+    pressed = press(wanted, report, threads or usual(1))
     prepare(folder, force)
     for one in (folder, *(folder / name for name in NAMES)):  # of a spring that the seats no longer reach, too
         clear(one, (*RESULTS, output.STEPS, "report.html"))

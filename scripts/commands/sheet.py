@@ -116,7 +116,7 @@ def list_wires(name: str | None = None) -> None:
 
 
 def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
-    """Wire, line and cycle of the Goodman diagram; None without a wire of known endurance or a cycle."""
+    """Wire, line and cycle of the Goodman diagram; None without endurance data or a cycle."""
     known, endured, cycle = made.wire, made.endured, made.cycle
     if known is None or endured is None or cycle is None:
         return None

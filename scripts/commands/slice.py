@@ -18,7 +18,7 @@ from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.scripts.terminal.console import Console
-from coilset.scripts.terminal.step_words import HEAD, quantity, step_row
+from coilset.scripts.terminal.progress import HEAD, quantity, step_row
 from coilset.scripts.terminal.target import results_folder
 
 NOTE = (
@@ -79,7 +79,7 @@ def slice_case(
 
 
 def _placed(error: InputError, case: Case, case_file: str | Path) -> InputError:
-    """The error with the option, or the entry of the case file, that gave what is wrong."""
+    """The error with the option, or the entry of the case file, that caused it."""
     group, _, entry = error.place.partition(".")
     if error.file:
         return error

@@ -20,12 +20,13 @@ from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
 from coilset.model.run.analysis import Analysis
 from coilset.model.runtime.threads import usual
+from coilset.scripts.compiling import compile_first
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.drawing import Drawings
 from coilset.scripts.terminal.interactive import Prompt
 from coilset.scripts.terminal.log import run_log
+from coilset.scripts.terminal.progress import VOICES, Lines
 from coilset.scripts.terminal.target import results_folder
-from coilset.scripts.terminal.telling import VOICES, Lines
 
 log = logging.getLogger("coilset.steps")
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
@@ -61,6 +62,8 @@ def solve(
         interrupt = stack.enter_context(Interrupt(comm, telling.say))
         with naming(case_file):
             analysis = Analysis(case, comm, threads=threads or usual(comm.size))
+        if analysis.law.creep is not None:
+            compile_first(stages=("creep",))
         on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
         on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, force, resume))
         drawings = (drawings or stack.enter_context(Drawings(os.environ))) if pictures else None

@@ -75,7 +75,7 @@ def beside(title: str, command: list[str]) -> Iterator[list[int]]:
 
 
 def run(title: str, command: list[str], environment: dict[str, str] | None = None) -> int:
-    """Say what is run, and run it from the repository's folder."""
+    """Print a line, and run the tests from the repository's folder."""
     print(f"coilset: {title}", flush=True)
     done = subprocess.run(command, cwd=REPOSITORY, check=False, env=environment, preexec_fn=end_with_parent)
     return done.returncode

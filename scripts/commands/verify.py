@@ -63,7 +63,7 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
 def show() -> None:
     """List the cases."""
     table = Table(box=None, padding=(0, 2))
-    for column in ("case", "", "what is compared"):
+    for column in ("case", "", "quantity compared"):
         table.add_column(column)
     for case in map(registry.load, registry.names()):
         table.add_row(case.name, "" if case.fast else "slow", case.title)

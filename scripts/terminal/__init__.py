@@ -1,1 +1,1 @@
-"""What commands print and ask for."""
+"""Output of commands and input from the user."""

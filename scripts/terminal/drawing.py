@@ -19,7 +19,7 @@ from types import TracebackType
 from typing import Any, BinaryIO
 
 from coilset.model.base.errors import CoilsetError
-from coilset.model.runtime.libraries import WhenUsed
+from coilset.model.runtime.libraries import LazyFinder
 from coilset.model.runtime.processes import end_with_parent, first_rank, number_of_ranks, usable_cores
 
 PARTS = ("figures", "scene")  # of coilset.model.figures.pictures
@@ -128,7 +128,7 @@ def _ended(status: int) -> dict[str, Any]:
 
 
 def draw_part(part: str, task: BinaryIO) -> dict[str, Any] | None:
-    """Load what a part needs, wait for the folder of the run, and draw it; None if no folder is given."""
+    """Load the libraries of a part, wait for the folder of the run, and draw it; None if no folder is given."""
     from coilset.model.figures import pictures
 
     draw = pictures.PARTS[part]()
@@ -154,7 +154,7 @@ def main(part: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that solves
     os.nice(MODEST)
     gc.disable()  # it ends soon
-    sys.meta_path.insert(0, WhenUsed(["matplotlib.pyplot"]))  # pyvista loads it and does not use it
+    sys.meta_path.insert(0, LazyFinder(["matplotlib.pyplot"]))  # pyvista loads it and does not use it
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # output of libraries must not mix with the answers
     answer = draw_part(part, sys.stdin.buffer)

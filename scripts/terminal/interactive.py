@@ -20,7 +20,7 @@ stop             end here; the results are written, and --resume continues"""
 
 
 class Prompt:
-    """Asks after each step; usable as the report of `Analysis.run`.
+    """Prompt after each step; usable as the report of `Analysis.run`.
 
     Args:
         analysis: Analysis.
@@ -32,7 +32,7 @@ class Prompt:
         self.analysis, self.say, self.ask, self.free = analysis, say, ask, False
 
     def __call__(self, step: Step) -> None:
-        """Ask until the user starts the next step."""
+        """Prompt until the user starts the next step."""
         while not self.free:
             try:
                 word, _, rest = self._answer().strip().partition(" ")

@@ -28,8 +28,8 @@ def results_folder(out: str | Path | None, name: str, *above: str) -> Path:
     """The folder that the user names, or results/ABOVE/NAME if none is named.
 
     Args:
-        out: what the user named.
-        name: of the case, the material or whatever the results belong to; what no folder name may contain becomes `_`.
+        out: path given by the user.
+        name: of the case, material or other source of the results; characters not allowed in folder names become `_`.
         above: folders in between.
 
     Raises:

@@ -1,6 +1,5 @@
 """The benchmarks measure what they say: stages do not overlap, records are whole, tables and figure come of them."""
 
-import importlib.util
 import itertools
 import json
 import os
@@ -13,10 +12,8 @@ from mpi4py import MPI
 from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.run import build
 from coilset.scripts.commands import bench as command
-from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch, walk
-from coilset.verification.benchmarks.ranks import compare
+from coilset.verification.benchmarks import everyday, measure, stopwatch
 from coilset.verification.benchmarks.stopwatch import Stopwatch
-from coilset.verification.benchmarks.target import ITERATION, per_element, seconds, spread, targets
 
 
 @pytest.fixture
@@ -66,31 +63,8 @@ def test_a_stage_ends_where_it_is_left_by_an_error(clock):
     assert watch.wall == {"outer": 1.0, "next": 4.0}
 
 
-FOUND = {"force_N": 345.0, "set_mm": 1.57, "iterations": 170, "threads": 2}
-COMPARED = {
-    "elements": 40,
-    "axis": "chords",
-    "coilset": FOUND | {"seconds": 0.25, "elapsed": 0.16},
-    "unestimated": FOUND | {"seconds": 0.2, "elapsed": 0.125},
-    "opensees": {"force_N": 345.2, "set_mm": 1.56, "iterations": 204, "threads": 1, "seconds": 1.0, "elapsed": 1.1},
-}
-
-
-def compared_ranks(runs):
-    """Rows as if two ranks were measured; the run with `ranks` of them takes turns with the one on one rank."""
-    turns = []
-
-    def measured(*job, ranks):
-        turns.append(ranks)
-        return runs[ranks - 1] | {"force_N": 100.0 + ranks}
-
-    rows = compare(measured, "quick", lambda name: None)
-    assert turns == [1, 2] * (len(turns) // 2)
-    return rows
-
-
 def test_every_tangent_counts_as_assembly():
-    """Between clamped heads most are built with the forces that a correction foresees."""
+    """Between clamped heads most are built with the section forces that a correction predicts."""
     case = measure.read_example(["ends=clamped", "mesh.elements_per_turn=8", "loading=[{to: {travel: 2}}]"])
     watch, stages = Stopwatch(), []
     analysis = measure.build(watch, case, MPI.COMM_SELF)
@@ -99,7 +73,7 @@ def test_every_tangent_counts_as_assembly():
     matrix.fill = lambda *args: (stages.append(watch._open[-1]), fill(*args))
     with watch.stage("other"):
         assert analysis.newton.solve(analysis.control.to_height(analysis.control.height - 2.0)).converged
-    assert analysis.newton.foreseeing.used
+    assert analysis.newton.iteration.predicted
     assert stages
     assert set(stages) == {"assemble"}
 
@@ -112,23 +86,17 @@ def record():
             patch.setattr(build, function, getattr(build, function))
         example = measure.example(1)
         runs = [measure.press(elements) for elements in (20, 40)]
-        unestimated = measure.press(20, 1, 0, 0) | {"elements": 100_000, "memory_GiB": 1.875}
-    commands = [{"name": "solve", "first_line": [0.25, 0.75], "end": [1.5, 3.5]}]
-    walked = [{"name": name, "threads": 1, "seconds": [0.25, None]} for name in walk.WALKS]
-    record = {
-        "machine": run.machine(),
-        "commands": commands,
-        "walks": walked,
+        patch.setattr(command, "measure", lambda *job, ranks: runs[ranks - 1] | {"force_N": 100.0 + ranks})
+        ranks = {"kind": command.KINDS[1], **command.one_and_two({}, 40, 1)}
+    seconds = {kind: [0.25, 1.5] for kind in everyday.MEASURED}
+    return {
+        "machine": command.machine(),
+        "commands": [{"name": "solve", **seconds}],
         "example": example,
         "elements": runs,
-        "unestimated": [unestimated],
-        "ranks": [runs[0], runs[0]],
-        "one_and_two_ranks": compared_ranks(runs),
-        "cases": measure.cases(1),
-        "opensees": [COMPARED],
+        "ranks": [ranks],
         "load_after": 0.0,
     }
-    return record | {"targets": targets(record)}
 
 
 @pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="measures one rank")
@@ -137,69 +105,29 @@ def test_record_is_whole(record):
     assert example["elements"] == 40
     assert example["steps"] == 24
     assert all(pair[0] > 0.0 for pair in example["stages"].values())
-    assert seconds(example["stages"], 0) <= example["analysis"][0] * (1 + 1e-9)
+    assert sum(pair[0] for pair in example["stages"].values()) <= example["analysis"][0] * (1 + 1e-9)
     assert pressed["elements"] == 40
     assert 0.5 < pressed["plastic"] < 1.0
     assert pressed["evaluations"] > pressed["iterations"] > 2
-    assert record["cases"]["failed"] == 0
     # the stages of the iteration add up to the cost of an element
-    assert sum(per_element(pressed, stage) for stage in ITERATION) == pytest.approx(per_element(pressed))
+    spent = sum(pressed["stages"][stage][1] for stage in measure.ITERATION)
+    assert measure.per_element(pressed) == pytest.approx(1e6 * spent / 40 / pressed["iterations"])
+    assert record["ranks"][0]["difference"] == pytest.approx(1.0 / 101.0)
     assert json.loads(json.dumps(record)) == record
-
-
-def test_spread_is_of_the_large_runs():
-    def made(elements, cost):
-        stages = {stage: [0.0, 0.0] for stage in ITERATION}
-        stages["law"][1] = 1e-6 * cost * elements * 3
-        return {"elements": elements, "iterations": 3, "stages": stages}
-
-    runs = [made(40, 90.0), made(4000, 50.0), made(16000, 55.0), made(100_000, 52.0)]
-    assert per_element(runs[1]) == pytest.approx(50.0)
-    assert spread(runs, 4000) == pytest.approx(0.1)
-    assert spread(runs[:2], 4000) is None
 
 
 @pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="measures one rank")
 def test_command_prints_and_writes(record, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(command, "measure_all", lambda full, cold, environment, report, against: record)
-    command.bench(tmp_path / "out", False, False)
+    monkeypatch.setattr(command, "everyday", lambda starts, environment: record["commands"])
+    jobs = {"example": [record["example"]], "press": record["elements"]}
+    monkeypatch.setattr(command, "measure", lambda environment, job, *size, ranks=1: jobs[job][ranks - 1])
+    command.bench(tmp_path / "out", False, True)
     said = capsys.readouterr().out
-    for words in (
-        "factorise",
-        "µs",
-        "ranks",
-        "an hour and core",
-        "aimed at",
-        "first line, the other",
-        "as shipped",
-        "0.250",
-        "times as fast",
-        "with contact",
-        "9.9e-03",
-        "345.200",
-        "4.0",
-        "6.9",
-        "8.8",
-        "1.88 GiB",
-    ):
+    for words in ("factorise", "µs", "first line, the other", "1.50", "coils in contact", "compile, from nothing"):
         assert words in said
-    assert "OpenSees is not here" not in said
-    assert json.loads((tmp_path / "out" / "bench.json").read_text()) == record
-    assert (tmp_path / "out" / "bench.png").stat().st_size > 10_000
-
-
-def test_it_is_said_where_opensees_is_missing(capsys):
-    command.Console(width=140).print(command._opensees([COMPARED | {"opensees": None}]))
-    assert "OpenSees is not here" in capsys.readouterr().out
-
-
-@pytest.mark.skipif(not importlib.util.find_spec("openseespy"), reason="there is no OpenSees")
-def test_opensees_finds_the_same_force_with_the_same_chords(monkeypatch):
-    """Elements differ by terms of second order in their length: 7.5e-4 with 40 of them, 6e-6 with 320."""
-    monkeypatch.setattr(same_spring, "STEPS", 10)
-    found = same_spring.compare(40, repeats=1)
-    assert found["opensees"]["force_N"] == pytest.approx(found["coilset"]["force_N"], rel=1.5e-3)
-    assert found["opensees"]["set_mm"] == pytest.approx(found["coilset"]["set_mm"], rel=1e-2)
+    kept = json.loads((tmp_path / "out" / "bench.json").read_text())
+    assert kept["example"] == record["example"]
+    assert len(kept["ranks"]) == 4
 
 
 def test_commands_are_timed_in_turns_and_the_first_run_does_not_count(monkeypatch, tmp_path):
@@ -211,12 +139,13 @@ def test_commands_are_timed_in_turns_and_the_first_run_does_not_count(monkeypatc
     def timed(command, environment):
         called.append(command[0])
         assert "COILSET_STARTED" not in environment  # or its times would count from when this one was started
-        return 0.5, 100.0 if len(called) <= 2 else float(next(clock))
+        return 0.5, 100.0 if len(called) <= 2 else float(next(clock)), 0.25
 
     monkeypatch.setattr(everyday, "timed", timed)
     monkeypatch.setattr(everyday, "COMMANDS", {"--help": ["--help"]})
     rows = everyday.everyday(everyday.launchers(tmp_path), {"COILSET_STARTED": "1"}, 3)
-    assert rows == [{"name": "--help", "first_line": [0.5, 0.5], "end": [12.0, 13.0]}]  # of 10, 12, 14 and 11, 13, 15
+    (row,) = rows
+    assert row == {"name": "--help", "first line": [0.5, 0.5], "end": [12.0, 13.0], "processor": [0.25, 0.25]}
     assert called == 4 * [called[0], str(tmp_path / "scripts" / "coilset")]
 
 
@@ -227,37 +156,8 @@ def test_what_is_no_checkout_is_said(tmp_path):
 
 def test_a_command_is_timed_to_its_first_line_and_to_its_end():
     slow = "import time; print('first', flush=True); time.sleep(0.3); print('last')"
-    first, end = everyday.timed([sys.executable, "-c", slow], dict(os.environ))
+    first, end, processor = everyday.timed([sys.executable, "-c", slow], dict(os.environ))
     assert 0.0 < first <= end - 0.3
+    assert processor > 0.0
     with pytest.raises(CoilsetError, match="failed: no such thing"):
         everyday.timed([sys.executable, "-c", "import sys; sys.exit('no such thing')"], dict(os.environ))
-
-
-def test_walks_of_several_checkouts_are_timed_in_turns(tmp_path):
-    """Medians of what each prints; a checkout that cannot walk so has none."""
-    starts, log = [], tmp_path / "log"
-    for side in "ab":
-        script = tmp_path / side
-        script.write_text(
-            f"""#!{sys.executable}
-import json, os, sys
-assert sys.argv[1] == "python" and "COILSET_STARTED" not in os.environ
-with open({str(log)!r}, "a+") as log:
-    log.write({side!r})
-    log.seek(0)
-    count = log.read().count({side!r})
-print("a line before")
-print(json.dumps([{{"name": "w", "threads": 1, "seconds": count ** 2 if {side!r} == "a" else None}}]))
-"""
-        )
-        script.chmod(0o755)
-        starts.append([str(script)])
-    rows = everyday.walks(starts, dict(os.environ) | {"COILSET_STARTED": "1"}, 3)
-    assert rows == [{"name": "w", "threads": 1, "seconds": [4, None]}]
-    assert log.read_text() == "ababab"
-
-
-@pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="measures one rank")
-def test_a_walk_is_timed():
-    assert 0.0 < walk.walk(["loading=[{to: {travel: 1}, steps: 1}]", "mesh.elements_per_turn=8"], 1) < 60.0
-    assert walk.walk(["no.such.entry=1"], 1) is None

@@ -11,7 +11,7 @@ import time
 import pytest
 
 from coilset.model.base.errors import CoilsetError
-from coilset.scripts.beginning import announce_begin
+from coilset.scripts.startup import announce_begin
 from coilset.scripts.terminal import drawing
 from coilset.scripts.terminal.drawing import Drawings
 

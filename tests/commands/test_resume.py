@@ -143,7 +143,7 @@ def test_every_step_can_be_the_last_one_before_a_crash(example, tmp_path, more):
     """One chain of processes, each stopped after its next step: the same bits as without a stop.
 
     Between seats contacts close and open on the way, so that the matrices of run and chain differ in the places of
-    their zeros. Between heads, where steps are foreseen with the tangents of the last equilibrium, some are cut.
+    their zeros. Between heads, where steps are predicted with the tangents of the last equilibrium, some are cut.
     """
     case = read_case(example, [*SETTINGS, *more])
     whole, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)

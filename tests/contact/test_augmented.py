@@ -54,7 +54,7 @@ def test_as_many_augmentations_as_are_allowed_are_made(monkeypatch):
         monkeypatch.setattr(analysis.newton, "control", replace(analysis.newton.control, augmentations=allowed))
         outcome = analysis.newton.solve(load)
         assert outcome.converged == (allowed == needed)
-    told = f"mm is left after {needed - 1} augmentations, as where the wire lies solid on itself"
+    told = f"mm is left after {needed - 1} augmentations, so the spring is probably solid"
     assert outcome.reason.endswith(told)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.model.contact.base import Augmented, HasMemory, LimitsStep, TrialPositions
+from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.gap import Gaps, Stops
@@ -36,25 +36,25 @@ def trial(helix):
     return TrialPositions(helix(4.95, taper=0.05, lift=2.5), PRESSED, np.full((41, 3), 1e-3))
 
 
-def test_kinds_do_what_their_protocols_say(kinds):
+def test_kinds_say_what_they_do(kinds):
     made = kinds()
-    assert {type(kind) for kind in made if isinstance(kind, LimitsStep)} == {Coils, Seat}
-    assert {type(kind) for kind in made if isinstance(kind, Augmented)} == {Coils, Seat}
-    assert {type(kind) for kind in made if isinstance(kind, HasMemory)} == {Coils, Seat, CoilFriction, SeatFriction}
+    assert {type(kind) for kind in made if kind.limits_step} == {Coils, Seat}
+    assert {type(kind) for kind in made if kind.multiplier_offset is not None} == {Coils, Seat}
+    assert {type(kind) for kind in made if kind.memory is not None} == {Coils, Seat, CoilFriction, SeatFriction}
     assert {type(kind) for kind in made if kind.needs_rotations} == {CoilFriction, SeatFriction}
 
 
 def test_shapes_agree_and_the_last_equilibrium_stays(kinds, trial):
     """Each kind bears at this state; evaluation changes no committed array."""
     for kind in kinds():
-        before = {k: v.equilibrium.copy() for k, v in kind.memory.state.items()} if isinstance(kind, HasMemory) else {}
+        before = {k: v.equilibrium.copy() for k, v in kind.memory.state.items()} if kind.memory is not None else {}
         part = kind.evaluate(trial)
         m, k = part.dofs.shape
         assert part.forces.shape == (m, k), kind.name
         assert part.stiffness.shape == (m, k, k), kind.name
         assert {one.shape for one in (part.pressure, part.penetration, part.point, part.onset_force)} == {(m,)}
         assert np.abs(part.forces).max() > 0.0, kind.name
-        if isinstance(kind, LimitsStep):
+        if kind.limits_step:
             assert kind.max_penetration(trial) == part.penetration.max() > 0.0, kind.name
         for name, values in before.items():
             np.testing.assert_array_equal(kind.memory.committed(name), values, err_msg=kind.name)
@@ -65,7 +65,7 @@ def test_an_offset_presses_as_much_as_it_was_sunk_in(kinds, trial):
 
     Beyond the onset that is c (2 p − w), but for a seat's tip, which bears without an onset."""
     for kind in kinds():
-        if isinstance(kind, Augmented):
+        if kind.multiplier_offset is not None:
             before = kind.evaluate(trial)
             kind.augment(trial)
             after = kind.evaluate(trial)

@@ -62,7 +62,7 @@ BOMB = "a0: &a0 [x, x, x, x, x, x, x, x, x]\n" + "".join(
         ("a: " + "{b: " * 1500 + "}" * 1500, "nested deeper than 40 levels"),
         ("a: " + "[" * 1500, "nested deeper than 40 levels"),
         (BOMB, "more than 1,000,000 values; are aliases repeated by aliases?"),
-        ("&a [*a]", "does an alias lie within what it repeats?"),
+        ("&a [*a]", "does an alias refer to what contains it?"),
         ("a: *b", "line 1, column 4: not readable as YAML: found undefined alias 'b'"),
         ("a: b\0c", "not readable as YAML"),
         ("a:\n\tb: 1", "line 2, column 1: not readable as YAML: there is a tab at the start; indent with spaces"),

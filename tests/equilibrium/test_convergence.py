@@ -1,8 +1,11 @@
 """When an iteration is given up: stagnation can be found before the iterations end, and growth without bound."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, reason_in_words
+from coilset.model.equilibrium.iteration import CRAWL, CRAWLS, Iteration
 from coilset.model.equilibrium.methods import METHODS
 from coilset.model.equilibrium.settings import NewtonControl
 
@@ -40,3 +43,19 @@ def test_a_new_least_residual_is_waited_for_anew():
 def test_growth_without_bound_ends_at_once():
     assert lost([1.0, 0.99 * DIVERGENCE, 0.5], 20) is None
     assert lost([1.0, 1.01 * DIVERGENCE], 20) == (1, Reason.DIVERGED_DTOL)
+
+
+def test_corrections_of_which_nothing_is_left_are_given_up():
+    """Eight in a row; one that is made to a hundredth, or by PETSc's own search, begins the count anew."""
+
+    def crawls(lengths):
+        iteration = SimpleNamespace(_step_length=None, _crawled=0)
+        found = []
+        for iteration._step_length in lengths:
+            found.append(Iteration._crawls(iteration))
+        return found
+
+    short = 0.1 * CRAWL
+    assert crawls([short] * CRAWLS) == [False] * (CRAWLS - 1) + [True]
+    assert not any(crawls([*[short] * (CRAWLS - 1), CRAWL] * 3))
+    assert not any(crawls([*[short] * (CRAWLS - 1), None] * 3))

@@ -17,7 +17,7 @@ from coilset.model.results.records.buckling import axis_offset, buckling, critic
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
-from coilset.scripts.terminal.telling import Lines
+from coilset.scripts.terminal.progress import Lines
 
 LONG = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 40, "pitch": 12.0}
 HARINGX = 39.16  # mm, of this spring between clamped heads; coilset.verification.references.stability

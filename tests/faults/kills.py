@@ -1,8 +1,10 @@
 """Kill runs at random moments, go on with --resume, and compare with runs that nobody disturbed, bit by bit.
 
     scripts/coilset python tests/faults/kills.py --kills 100
+    scripts/coilset python tests/faults/kills.py --kills 30 --springs 6
 
-A small spring with contact and friction, on one and on two ranks, a sweep, and a search for a design. Each is killed
+A small spring with contact and friction, on one and on two ranks, a sweep, and a search for a design; with `--springs`
+so many random springs with friction instead, with fewer section points than usual. Each is killed
 (`kill -9`) again and again, at a random moment after something new was kept, until it comes to its end; then it begins
 anew. Says how often each was killed, what differed, and how many processes were left; exits 1 if there is anything of
 either. Where two runs that nobody disturbs differ, as on two ranks where MUMPS adds what arrives first, numbers are to
@@ -11,6 +13,7 @@ agree to `AGREEMENT`, and how often was iterated does not count.
 
 import argparse
 import csv
+import itertools
 import json
 import os
 import random
@@ -24,6 +27,9 @@ import uuid
 from pathlib import Path
 
 import numpy as np
+import yaml
+
+from coilset.verification.springs.random_springs import features, random_spring
 
 CASE = """
 spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}
@@ -52,6 +58,8 @@ LONGEST = 0.5  # seconds after something was kept, at most, in which the kill co
 AGREEMENT = 1e-9  # of a quantity's largest magnitude, and absolutely, in N, mm and MPa
 COUNTED = ("iterations", "evaluations", "failed_solves")  # work that takes another way where bits differ
 WAIT = 120.0  # seconds for something to be kept
+FEWER = {"section": {"kind": "curved", "radial": 3, "angular": 12}}  # of the random springs
+SPRING = "random spring "  # with its number, the name of a run
 COMMANDS = {
     "solve": ["solve", "case.yaml", "--no-pictures", "--out", "out"],
     "solve on 2 ranks": ["-n", "2", "solve", "case.yaml", "--no-pictures", "--out", "out"],
@@ -112,7 +120,7 @@ def to_the_end(name: str, folder: Path, kills: int, left: list[int]) -> int:
     begun, count = False, 0
     while True:
         before = kept(folder)
-        running = Running([*COMMANDS[name], *(["--resume"] if begun else [])], folder)
+        running = Running([*words(name), *(["--resume"] if begun else [])], folder)
         until = time.monotonic() + WAIT
         while running.process.poll() is None and kept(folder) == before and time.monotonic() < until:
             time.sleep(0.005)
@@ -163,10 +171,25 @@ def same(name: str, one: object, other: object, to_the_bit: bool) -> bool:
     return one == other or (not to_the_bit and name in (*COUNTED, "warnings"))  # warnings have numbers in their words
 
 
-def fresh(folder: Path) -> Path:
-    """An empty folder with the input files."""
+def words(name: str) -> list[str]:
+    """Words of the command of a run."""
+    return COMMANDS["solve"] if name.startswith(SPRING) else COMMANDS[name]
+
+
+def with_friction(count: int) -> list[str]:
+    """Names of the runs of the first random springs with friction."""
+    numbers = (number for number in itertools.count() if "friction" in features(random_spring(number)))
+    return [f"{SPRING}{number}" for number in itertools.islice(numbers, count)]
+
+
+def fresh(folder: Path, name: str = "") -> Path:
+    """An empty folder with the input files of a run."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
+    if name.startswith(SPRING):
+        case = random_spring(int(name.removeprefix(SPRING))) | {"mesh": FEWER}
+        (folder / "case.yaml").write_text(yaml.safe_dump(case))
+        return folder
     (folder / "case.yaml").write_text(CASE)
     (folder / "sweep.yaml").write_text(SWEEP)
     (folder / "design.yaml").write_text(DESIGN)
@@ -179,20 +202,22 @@ def main() -> int:
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", choices=COMMANDS, help="of the commands")
+    parser.add_argument("--springs", type=int, help="number of random springs with friction, instead of the commands")
     options = parser.parse_args()
     random.seed(options.seed)
     chosen = [options.only] if options.only else list(COMMANDS)
+    chosen = with_friction(options.springs) if options.springs else chosen
     bad, each = False, -(-options.kills // len(chosen))
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as place:
         for name in chosen:
-            undisturbed = fresh(Path(place) / "undisturbed")
+            undisturbed = fresh(Path(place) / "undisturbed", name)
             to_the_end(name, undisturbed, 0, [])
             wanted = found(name, undisturbed)
-            to_the_end(name, fresh(Path(place) / "again"), 0, [])
+            to_the_end(name, fresh(Path(place) / "again", name), 0, [])
             to_the_bit = not differing(wanted, found(name, Path(place) / "again"), True)
             count, ends, left, unlike = 0, 0, [], set()
             while count < each:
-                folder = fresh(Path(place) / "killed")
+                folder = fresh(Path(place) / "killed", name)
                 count += to_the_end(name, folder, each - count, left)
                 now, ends = found(name, folder), ends + 1
                 unlike |= differing(wanted, now, to_the_bit)

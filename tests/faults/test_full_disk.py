@@ -22,7 +22,8 @@ from coilset.model.case import read_case
 from coilset.model.figures import png, scene
 from coilset.model.figures.display import ensure
 from coilset.model.figures.panels.characteristic import characteristic
-from coilset.model.results.files import dataset, fields, folder
+from coilset.model.results import run_files
+from coilset.model.results.files import dataset, folder
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.files.grid_file import write_grid
 from coilset.model.results.records.provenance import origin
@@ -81,7 +82,7 @@ WRITERS = {
     "history": lambda out, one: folder.write_history(out, one.result.steps),
     "seats": lambda out, one: folder.write_seats(out, one.result.seats),
     "points": lambda out, one: dataset.write_points(out, dataset.point_state(one.setup, one.result)),
-    "fields": lambda out, one: fields.write_fields(out, one.setup, one.result.snapshots),
+    "fields": lambda out, one: run_files.write_fields(out, one.setup, one.result.snapshots),
     "checkpoint": save,
     "data of a sweep": lambda out, one: sweep_data.write(out / "sweep.nc", xr.Dataset({"a": ("n", np.zeros(999))})),
     "record of verification": lambda out, one: Study(out).write("name" * 99),

@@ -4,7 +4,7 @@ import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
+from coilset.model.case import check, read_case
 from coilset.model.case.targets import check_targets, closing_force
 from coilset.scripts.commands.solve import solve
 
@@ -30,11 +30,14 @@ def test_an_unloaded_spring_is_no_pull(example, target):
 
 
 BEYOND = [
-    ("travel: 25", "travel: is 25 mm, but the spring can only be compressed by 17.5 mm, where it is at block"),
+    (
+        "travel: 25",
+        "travel: is 25 mm, but the spring can only be compressed by 17.5 mm, to its block height of 17.5 mm",
+    ),
     ("travel: 1e9", "travel: is 1e+09 mm"),
     ("height: 10", "height: is 10 mm, below the block height of 17.5 mm"),
     ("height: 17.49", "height: is 17.49 mm, below the block height of 17.5 mm"),
-    ("force: 5000", "force: is 5000 N, but all coils of this spring lie on each other at about 717.8 N"),
+    ("force: 5000", "force: is 5000 N, but all coils of this spring are in contact at about 717.8 N"),
 ]
 
 
@@ -52,6 +55,16 @@ def test_nothing_is_pressed_beyond_its_block(example, tmp_path, target, words, e
 def test_block_itself_is_not_beyond(example, target):
     case = read_case(example, [f"loading=[{{to: {{{target}}}}}]"])
     check_targets(case, case.spring.build(), G)
+
+
+def test_a_double_cone_stops_where_its_flanks_rest_on_each_other():
+    """Its coils pass their neighbours, and 3.069 mm would press the upper flank into the lower one."""
+    spring = {"wire_diameter": 0.979, "turns": 5.07, "pitch": 1.578, "end_coils": "closed and ground"}
+    spring["mean_diameter"] = {"shape": "double cone", "ends": 7.398, "middle": 12.221}
+    case = check({"spring": spring, "loading": [{"to": {"travel": 3.069}}]})
+    words = "is 3.069 mm, but the spring can only be compressed by 2.18626 mm, to its block height of 1.95797 mm"
+    with pytest.raises(InputError, match=words):
+        check_targets(case, case.spring.build(), G)
 
 
 def test_seats_of_other_shapes_have_no_known_block(example):

@@ -21,7 +21,7 @@ from coilset.model.slice import analysis as slices
 from coilset.scripts import main, ranks, running, warm
 from coilset.scripts.commands import design, material, mesh, report, solve, sweep, verify
 from coilset.scripts.commands import slice as slice_command
-from coilset.scripts.plain import typer
+from coilset.scripts.startup import typer
 from coilset.verification.benchmarks import everyday
 
 COMMANDS = {  # a right line each, and the options that it takes besides

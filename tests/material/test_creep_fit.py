@@ -159,7 +159,7 @@ def test_the_command(tmp_path):
         ),
         (lambda text: text.replace("shear_stress", "tau"), "give one of the columns stress and shear_stress"),
         (lambda text: "\n".join(text.splitlines()[:6]), "has 4 readings; 8 are needed at least"),
-        (lambda text: text.replace("\n1,", "\n-1,", 1), "line 3, column hours: -1 must lie between 0 and 1e+07"),
+        (lambda text: text.replace("\n1,", "\n-1,", 1), "line 3, column hours: -1 must be between 0 and 1e+07"),
     ],
 )
 def test_wrong_files(change, message, tmp_path):

@@ -52,7 +52,7 @@ def test_files_and_pictures(tmp_path, capsys):
 
 def test_gmsh_writes_small_letters_only(tmp_path):
     file = tmp_path / "spring.MSH"
-    with pytest.raises(InputError, match=r"--write: gmsh knows its format by small letters; give \.msh"):
+    with pytest.raises(InputError, match=r"--write: gmsh accepts lower-case suffixes only; give \.msh"):
         mesh(SPRINGS / "cone.yaml", pictures=False, write=[str(file)])
     assert not file.exists()
 

@@ -133,16 +133,6 @@ def test_block_height_of_parabolas(name, r_ends, r_middle, d):
     assert spring.block_height == pytest.approx(parabolic_rise(r_ends, r_middle, 6, d) + d, rel=EXACT)
 
 
-@pytest.mark.parametrize("name", ["barrel", "hourglass"])
-def test_block_height_where_coils_pass_each_other(name):
-    # m > d: where |r′| > d coils pass each other and rise by nothing; what remains is a half circle, turns π d²/(4 m).
-    d, r_ends, r_middle = {"barrel": (5, 15, 25), "hourglass": (4, 22, 14)}[name]
-    m = 4 * abs(r_middle - r_ends) / 6
-    assert m > d
-    # the end of the half circle is not smooth, so that the quadrature over 64 intervals a turn is not exact there
-    assert example(name).block_height == pytest.approx(6 * np.pi * d**2 / (4 * m) + d, rel=1e-4)
-
-
 def test_ground_spring():
     # n = 5.5, d = 4: z runs over two end turns of 4 mm each, two transitions of half a turn at (4 + p)/2 on average
     # and 4.5 turns at p; both tips keep d/4, so that the seats are d/4 inside the outermost centres.

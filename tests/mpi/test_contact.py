@@ -46,7 +46,7 @@ def pressed(request, example):
 def nearby(analysis, x, seats, rotations):
     """The state as a rank knows it."""
     node = analysis.rod.line.node
-    return analysis.system.touching.surroundings.trial(x[node], seats, rotations[node])
+    return analysis.system.touching.halo.trial(x[node], seats, rotations[node])
 
 
 def rows(analysis, part):

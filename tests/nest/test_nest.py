@@ -133,7 +133,7 @@ WRONG = [
         f"{HEIGHT} 5 mm, below 17.5 mm, where the first of the springs is at block",
     ),
     ({"loading": [{"to": {"height": 50.0}}]}, f"{HEIGHT} 50 mm, above the free length of the longer spring, 40 mm"),
-    ({"ends": "clamped"}, "ends: a nest stands between seats; give ends: seats"),
+    ({"ends": "clamped"}, "ends: a nest is compressed between seats; give ends: seats"),
     ({"seats": {"hold": "groove", "top": {"tilt": "free"}}}, "seats: seats that tilt or move aside are shared by both"),
     ({"loading": []}, "loading: "),
 ]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.figures.panels.panel import said
+from coilset.model.figures.panels.panel import with_unit
 from coilset.model.nest.output import headline
 from coilset.scripts.commands.nest import nest
 from coilset.scripts.commands.report import report
@@ -51,7 +51,7 @@ def test_the_answer_has_both_springs(folder, page):
     for name in ("outer", "inner"):
         assert f'href="{name}/report.html"' in page
         assert (folder / name / "report.html").is_file()
-        assert said(summary[name]["residual_shear_inside_MPa"], "MPa", 1) in page
+        assert with_unit(summary[name]["residual_shear_inside_MPa"], "MPa", 1) in page
 
 
 def test_the_figures_are_of_both_springs(page):
@@ -67,4 +67,4 @@ def test_the_figures_are_of_both_springs(page):
 def test_the_title_of_its_picture_is_in_plain_numbers():
     assert headline({"force_max_N": 83812.3, "set_mm": -1e-7}) == "Maximum force 83,812 N, set 0.00 mm"
     assert headline({"force_max_N": 412.68, "set_mm": 30.7037}) == "Maximum force 412.68 N, set 30.70 mm"
-    assert said(-1e-7, "mm", 3) == "0.000 mm"
+    assert with_unit(-1e-7, "mm", 3) == "0.000 mm"

@@ -17,10 +17,10 @@ from coilset.model.figures.panels.characteristic import NAMED, characteristic
 from coilset.model.figures.panels.material_curves import material_curve
 from coilset.model.figures.panels.phases import phases
 from coilset.model.figures.panels.seats import force_centre
-from coilset.model.figures.wire import closed, inside, moments, shear_around, tubes
+from coilset.model.figures.wire import closed, frames, inside, shear_around, tubes
 from coilset.model.material import library
-from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.page import CHAPTERS, write_report
+from coilset.model.report.render import GLOSSARY
 from coilset.model.results.files.opened import open_run
 from coilset.scripts.commands.report import report
 from coilset.scripts.commands.sheet import sheet
@@ -120,7 +120,7 @@ def numbers_of(line):
 def test_the_tube_is_round_the_wire(folder):
     """Each point of the surface is a wire radius from the centre line, the first of a ring towards the axis."""
     run = open_run(folder)
-    places, stress = tubes(run, moments(run), 81)
+    places, stress = tubes(run, frames(run), 81)
     centre = places[:, :, :-1].mean(axis=2)
     assert np.linalg.norm(places - centre[:, :, None], axis=-1) == pytest.approx(2.5, rel=1e-9)
     assert np.all(np.hypot(*np.moveaxis(places[:, :, 0, :2], -1, 0)) < np.hypot(*np.moveaxis(centre[..., :2], -1, 0)))
@@ -186,7 +186,7 @@ def test_a_law_of_several_temperatures_is_drawn_at_that_of_the_spring(folder):
 def test_each_step_can_be_slid_to(folder, page):
     """As many moments as steps and the start, where phases end those of the snapshots, which are kept apart."""
     run = open_run(folder)
-    shown = moments(run)
+    shown = frames(run)
     assert len(shown.labels) == run.summary["steps"] + 1 == len(data(page)["figures"]["spring"]["frames"])
     height = [float(label.split(": ")[1].split()[0]) for label in shown.labels[1:]]
     assert height == pytest.approx(run.data["travel_mm"].values, rel=1e-3, abs=1e-3)
@@ -194,7 +194,7 @@ def test_each_step_can_be_slid_to(folder, page):
     for moment, snapshot in ((4, 1), (6, 2)):
         assert np.array_equal(shown.x[moment], run.data["position"].values[snapshot])
         assert shown.shear[moment] == pytest.approx(around[snapshot], rel=1e-6, abs=1e-4)  # single precision
-    few = moments(run, 4)
+    few = frames(run, 4)
     assert [label.split(":")[0] for label in few.labels] == [
         "start",
         "step 1, to block",

@@ -14,7 +14,7 @@ import yaml
 from mpi4py import MPI
 
 from coilset.model.case.settings import put
-from coilset.model.report.packed import packed
+from coilset.model.report.render import packed
 from coilset.model.report.sweep_page import write_sweep_report
 from coilset.model.report.warning_words import KINDS
 from coilset.model.sweep import dataset

@@ -257,7 +257,7 @@ def test_they_are_in_the_log_the_summary_and_the_checkpoint(example, tmp_path, c
 def test_a_checkpoint_keeps_warnings(example, tmp_path):
     case = read_case(example, [*COARSE, "loading=[{to: {travel: 1}, steps: 1}]"])
     analysis, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
-    warning = Warning("initial rate", "start", "the initial rate is not known")
+    warning = Warning("initial rate", "start", "the initial rate is unknown")
     analysis.recorder.result = replace(analysis.result, warnings=(warning,))
     analysis.run(save=checkpoint.save)
     assert checkpoint.load(MPI.COMM_SELF).result.warnings == (warning,)

@@ -7,6 +7,7 @@ from coilset.meshes.springs.placement import straight
 from coilset.model.body.state import State, Where
 from coilset.model.material import library
 from coilset.model.rod import finer_path
+from coilset.model.rod.elements import THESIS
 from coilset.model.rod.finer_path import FinerPath
 from coilset.model.runtime import threads
 from coilset.model.runtime.threads import Threads
@@ -49,7 +50,7 @@ class Path:
 
 def follower(path):
     """The finer path of all arrays of the path's sections."""
-    return FinerPath(path.sections, path.state, list(path.points))
+    return FinerPath(path.sections, path.state, list(path.points), THESIS)
 
 
 @pytest.mark.parametrize("steps", [4, 8])
@@ -108,13 +109,13 @@ def test_step_that_is_given_up_leaves_no_trace():
         finer = follower(path)
         if given_up:
             path.to(strains(1.0))
-            assert finer.follow(path.s, 0.0, stands=False)
+            assert finer.follow(path.s, 0.0, final=False)
             assert path.state["finer_point_state"].equilibrium.any()
             path.state.restore()
             assert not path.state["finer_point_state"].equilibrium.any()
         for k in (1, 2):
             path.to(strains(0.5 * k))
-            assert finer.follow(path.s, k - 1.0, stands=False)
+            assert finer.follow(path.s, k - 1.0, final=False)
             path.state.commit()
             path.state.restore()  # of a later step: what is committed stays
         found.append(path.state.copy())

@@ -1,4 +1,4 @@
-"""Section forces foreseen by a correction, and Newton's iterations where they matter."""
+"""Section forces predicted by a correction, and Newton's iterations where they matter."""
 
 import numpy as np
 import pytest
@@ -29,41 +29,41 @@ def at(rod, values):
     return rod.coefficients.s.copy()
 
 
-def test_foreseen_forces_are_the_derivative_of_the_forces(turned):
+def test_predicted_forces_are_the_derivative_of_the_forces(turned):
     """D B δ against central differences at a turned state, where the charts' tangents are not 1; good to 1e-8."""
     rod, base, direction = turned
     h = 1e-6
     exact = (at(rod, base + h * direction) - at(rod, base - h * direction)) / (2 * h)
     forces = at(rod, base)
-    rod.correction.x.array[:] = direction
-    rod.predict()
-    rod.foresee(1.0)
+    rod.predict(direction)
+    rod.element_tangents(1.0)
     scale = np.abs(exact).max(axis=(0, 1))
-    np.testing.assert_allclose((rod.coefficients.foreseen - forces - exact) / scale, 0.0, atol=1e-7)
-    rod.stop_foreseeing()
-    np.testing.assert_array_equal(rod.coefficients.foreseen, forces)
+    np.testing.assert_allclose((rod.coefficients.predicted - forces - exact) / scale, 0.0, atol=1e-7)
+    rod.element_tangents()
+    np.testing.assert_array_equal(rod.coefficients.predicted, forces)
+    np.testing.assert_array_equal(rod.coefficients.s, forces)
 
 
-def test_without_strains_of_second_order_an_elastic_rod_has_its_foreseen_forces(turned):
-    """After 0.7 of a correction of 0.1 rad and 10 mm; the forces themselves differ from the foreseen ones by far."""
+def test_without_strains_of_second_order_an_elastic_rod_has_its_predicted_forces(turned):
+    """After 0.7 of a correction of 0.1 rad and 10 mm; the forces themselves differ from the predicted ones by far."""
     rod, base, direction = turned
     direction[rod.numbering.u] *= 100.0
-    direction[rod.numbering.shear] = 0.0
+    direction[rod.numbering.own] = 0.0
     at(rod, base)
-    rod.correction.x.array[:] = direction
-    rod.predict()
+    rod.predict(direction)
     there = at(rod, base + 0.7 * direction)
-    rod.foresee(0.7)
     found, expected = (np.zeros(len(base)) for _ in range(2))
-    rod.forces_without_second_order(found, 0.7)
+    rod.first_order_forces(found, 0.7)
     np.testing.assert_array_equal(rod.coefficients.s, there)
-    assert np.abs(there - rod.coefficients.foreseen).max() > 0.02 * np.abs(rod.coefficients.foreseen).max()
-    rod.coefficients.s[:] = rod.coefficients.foreseen
+    rod.element_tangents(0.7)
+    predicted = rod.coefficients.predicted
+    assert np.abs(there - predicted).max() > 0.02 * np.abs(predicted).max()
+    rod.coefficients.s[:] = predicted
     rod.internal_forces(expected)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
 
 
-def test_a_rod_stands_where_its_last_step_ended_without_asking_the_material(make_rod):
+def test_a_rod_recalls_the_end_of_its_last_step_without_evaluating_the_law(make_rod):
     """With that step's own tangents, which are those of plastic flow; not as at the place tried since."""
     rod = make_rod([[0, 0, 0], [LENGTH, 0, 0], [LENGTH, 60, 20]])
     increments = 0.02 * np.random.default_rng(5).normal(size=len(rod.increment.x.array))
@@ -71,12 +71,12 @@ def test_a_rod_stands_where_its_last_step_ended_without_asking_the_material(make
     known = [getattr(rod.coefficients, name) for name in ("s", "D", "E", "P", "W", "e")]
     there = [field.copy() for field in known]
     assert there[0].any()
-    rod.follow()
+    rod.advance()
     rod.state.commit()
     at(rod, -2.0 * increments)
     tried = rod.point_state.copy()
     rod.increment.x.array[:] = 0.0
-    assert rod.stand()
+    assert rod.recall()
     for field, values in zip(known, there, strict=True):
         np.testing.assert_array_equal(field, values)
     np.testing.assert_array_equal(rod.point_state, tried)
@@ -106,7 +106,7 @@ def test_a_long_rod_asks_the_law_instead(example, monkeypatch):
 @pytest.mark.parametrize("slenderness", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("problem", [elastica, circles])
 def test_newton_does_not_mind_slenderness(problem, slenderness):
-    """Ten steps of 8 rods, at most 8 iterations each; without foreseen forces r/L = 1e-3 fails in its first step."""
+    """Ten steps of 8 rods, at most 8 iterations each; without predicted forces r/L = 1e-3 fails in its first step."""
     counts, done, _value = problem(slenderness, 8)
     assert done
     assert max(counts) <= WANTED, counts

@@ -97,5 +97,5 @@ def test_wrong_entry_of_a_wire():
 
 
 def test_unknown_diameter_is_refused():
-    with pytest.raises(InputError, match=r"is not known at 30 mm; known for 0\.3 to 20 mm"):
+    with pytest.raises(InputError, match=r"is unknown at 30 mm; it is given for 0\.3 to 20 mm"):
         wire_law("EN 10270-1 SH", 30.0)

@@ -166,12 +166,12 @@ WRONG = [
     (lambda: wire("copper"), "material.wire: 'copper' is not a known wire; `coilset sheet --wires` lists them"),
     (
         lambda: wire("EN 10270-1 SL").strength(0.5),
-        "material.wire: the strength of 'EN 10270-1 SL' is not known at 0.5 mm; known for 1 to 10 mm",
+        "material.wire: the strength of 'EN 10270-1 SL' is unknown at 0.5 mm; it is given for 1 to 10 mm",
     ),
     (
         lambda: wire("EN 10270-3 1.4401").strength(1.2),
-        "material.wire: the strength of 'EN 10270-3 1.4401' is not known at 1.2 mm; "
-        "known for 0.05 to 1 and 1.5 to 6 mm",
+        "material.wire: the strength of 'EN 10270-3 1.4401' is unknown at 1.2 mm; "
+        "it is given for 0.05 to 1 and 1.5 to 6 mm",
     ),
 ]
 

@@ -1,8 +1,9 @@
-"""Elapsed time of everyday commands, and of the walk in them: medians for several checkouts, measured alternately.
+"""Time of everyday commands: medians for this checkout and, in turns with it, another one.
 
-Commands are measured from outside, until their first line and until they end.
+Commands are measured from outside: elapsed seconds until their first line and until they end, and processor seconds.
 """
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -14,19 +15,21 @@ from typing import Any
 
 from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.run.examples import EXAMPLES
-from coilset.verification.benchmarks import walk
-from coilset.verification.benchmarks.process import read_json
 
 REPEATS = 5
 THIS = Path(__file__).resolve().parents[2]
 CASE = str(EXAMPLES / "ck15_presetting.yaml")
-EQUAL = [word for setting in walk.EQUAL for word in ("--set", setting)]
+EQUAL = ["mesh.section.radial=4", "mesh.section.angular=12", "loading.0.steps=12", "loading.1.steps=12"]
 COMMANDS = {
     "--help": ["--help"],
-    "solve --no-pictures, 12 + 12 steps, 4 x 12 points": ["solve", CASE, "--no-pictures", *EQUAL],
+    "solve --no-pictures, 12 + 12 steps, 4 x 12 points": [
+        *("solve", CASE, "--no-pictures"),
+        *(word for setting in EQUAL for word in ("--set", setting)),
+    ],
     "solve --no-pictures": ["solve", CASE, "--no-pictures"],
     "solve": ["solve", CASE],
 }
+MEASURED = ("first line", "end", "processor")
 
 
 def launchers(against: Path | None = None) -> list[list[str]]:
@@ -45,8 +48,8 @@ def launchers(against: Path | None = None) -> list[list[str]]:
     return starts
 
 
-def timed(command: Sequence[str], environment: Mapping[str, str]) -> tuple[float, float]:
-    """Seconds to the first line and to the end of a command.
+def timed(command: Sequence[str], environment: Mapping[str, str]) -> tuple[float, float, float]:
+    """Elapsed seconds to the first line and to the end of a command, and its processor seconds.
 
     Raises:
         CoilsetError: if it failed.
@@ -59,11 +62,13 @@ def timed(command: Sequence[str], environment: Mapping[str, str]) -> tuple[float
         first = time.perf_counter() - began
         process.stdout.read()
         process.stdout.close()
-        if process.wait():
+        _, status, used = os.wait4(process.pid, 0)  # with the processes that it has waited for
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode:
             complaints.seek(0)
             lines = complaints.read().decode(errors="replace").strip().splitlines() or ["no message"]
             raise CoilsetError(f"'{' '.join(command)}' failed: {lines[-1]}")
-        return first, time.perf_counter() - began
+        return first, time.perf_counter() - began, used.ru_utime + used.ru_stime
 
 
 def everyday(
@@ -77,44 +82,16 @@ def everyday(
         repeats: of each command.
 
     Returns:
-        For each command its `name`, and `first_line` and `end`: seconds for each checkout.
+        For each command its `name`, and for each of MEASURED the seconds of each checkout.
     """
-    plain, rows = _of_a_new_command(environment), []
+    plain, rows = of_a_new_command(environment), []
     for name, arguments in COMMANDS.items():
         runs = [[timed([*start, *arguments], plain) for start in starts] for _ in range(repeats + 1)][1:]
-        first, end = ([median(run[i][which] for run in runs) for i in range(len(starts))] for which in (0, 1))
-        rows.append({"name": name, "first_line": first, "end": end})
+        medians = [[median(run[side][kind] for run in runs) for side in range(len(starts))] for kind in range(3)]
+        rows.append({"name": name, **dict(zip(MEASURED, medians, strict=True))})
     return rows
 
 
-def walks(
-    starts: Sequence[Sequence[str]], environment: Mapping[str, str], repeats: int = REPEATS
-) -> list[dict[str, Any]]:
-    """Medians for some checkouts, measured alternately.
-
-    Args:
-        starts: words that start the command of each.
-        environment: of the commands, from before MPI.
-        repeats: processes of each.
-
-    Returns:
-        As `walk.walks`, but for `seconds`: a number, or None, for each checkout.
-
-    Raises:
-        CoilsetError: if one failed.
-    """
-    plain, script = _of_a_new_command(environment), str(Path(walk.__file__).resolve())
-    runs = [
-        [read_json([*start, "python", script], f"'{start[0]} python walk.py'", plain) for start in starts]
-        for _ in range(repeats)
-    ]
-    rows = []
-    for number, row in enumerate(runs[0][0]):
-        found = [[run[side][number]["seconds"] for run in runs] for side in range(len(starts))]
-        rows.append({**row, "seconds": [None if None in side else median(side) for side in found]})
-    return rows
-
-
-def _of_a_new_command(environment: Mapping[str, str]) -> dict[str, str]:
+def of_a_new_command(environment: Mapping[str, str]) -> dict[str, str]:
     """Without the time at which this command started, from which that one would count."""
     return {name: value for name, value in environment.items() if name != "COILSET_STARTED"}

@@ -2,8 +2,6 @@
 
     python -m coilset.verification.benchmarks.measure example [REPEATS]
     mpirun -n RANKS python -m coilset.verification.benchmarks.measure press ELEMENTS [REPEATS [TOUCHING [ESTIMATED]]]
-    python -m coilset.verification.benchmarks.measure cases COUNT
-    python -m coilset.verification.benchmarks.measure opensees ELEMENTS [CURVED]
 
 The stages: `law` updates all section points (strains of the sections, material law, resultants, tangents); `assemble`
 the forces and the matrix; `contact` finds and evaluates coils and seats; `factorise` and `solve` are PETSc's, from its
@@ -22,9 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from coilset.model.run.examples import EXAMPLES
 from coilset.model.runtime.caches import load_without_compiler
-from coilset.verification.benchmarks.same_spring import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
-from coilset.verification.benchmarks.walk import SAME, STEPS
 
 if TYPE_CHECKING:  # at run time their import is measured
     from mpi4py import MPI
@@ -36,6 +32,9 @@ TURNS = 2.5  # of the example's spring
 MOST_TURNS = 256  # of springs whose coils touch: a thousand do not come to block in one step
 TRAVEL = 10.0  # mm, in one step: three times the travel at which the wire begins to yield
 STAGES = ("mesh", "set-up", "law", "contact", "assemble", "factorise", "solve", "other")
+ITERATION = STAGES[2:]  # of the equilibrium iteration
+SAME = ("mesh.section.radial=4", "mesh.section.angular=12")  # so that times of all versions refer to the same work
+STEPS = ("loading.0.steps=12", "loading.1.steps=12")
 FACTORISE, SOLVE = ("MatLUFactorSym", "MatLUFactorNum"), ("MatSolve",)  # PETSc's events
 
 
@@ -228,28 +227,9 @@ def press(elements: int, repeats: int = 1, touching: int = 0, estimated: int = 1
     }
 
 
-def cases(count: int) -> dict[str, Any]:
-    """Cases of the sweep over manufacturing tolerances, one after the other, as a worker of a sweep runs them.
-
-    Returns:
-        Dict: number of cases, how many failed, wall and CPU seconds for each on average without the first.
-    """
-    from mpi4py import MPI
-
-    from coilset.model.sweep.evaluate import evaluate
-    from coilset.model.sweep.plan import Plan
-
-    plan, watch = Plan(EXAMPLES / "sweeps" / "tolerances.yaml"), Stopwatch()
-    count = min(count, len(plan.rows) - 1)
-    records = [evaluate(**plan.task(plan.rows[0]), comm=MPI.COMM_SELF)]
-    with watch.stage("cases"):
-        records += [evaluate(**plan.task(row), comm=MPI.COMM_SELF) for row in plan.rows[1 : count + 1]]
-    return {
-        "cases": count,
-        "failed": sum(record["status"] == "failed" for record in records),
-        "seconds": [seconds / count for seconds in pair(watch, "cases")],
-        "memory_GiB": peak_memory(),
-    }
+def per_element(run: dict[str, Any]) -> float:
+    """Processor time of an element in a Newton iteration of `press`, µs."""
+    return 1e6 * sum(run["stages"][name][1] for name in ITERATION) / (run["elements"] * run["iterations"])
 
 
 def peak_memory() -> float:
@@ -258,7 +238,7 @@ def peak_memory() -> float:
 
 
 Job = Callable[..., dict[str, Any]]
-JOBS: dict[str, Job] = {"example": example, "press": press, "cases": cases, "opensees": compare}
+JOBS: dict[str, Job] = {"example": example, "press": press}
 
 
 def main(job: str, *arguments: str) -> None:

@@ -27,7 +27,8 @@ from coilset.model.equilibrium.system import System
 from coilset.model.figures.png import save
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
-from coilset.model.rod.kinematics import GAUSS, chord_triads
+from coilset.model.rod.elements import THESIS
+from coilset.model.rod.kinematics import chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import polar
 from coilset.verification.springs.curved_rod import clamped_rate
@@ -61,7 +62,7 @@ def rate(spring: Spring, turns: np.ndarray, representation: str, law: Law) -> fl
     line = line_mesh(polygon_nodes(spring, turns, keep, poisson=law.E / (2 * law.G) - 1), MPI.COMM_SELF)
     placement = None
     if representation == "curved":
-        placement = section_placement(spring, turns, chord_triads(np.diff(line.stations, axis=0)), GAUSS)
+        placement = section_placement(spring, turns, chord_triads(np.diff(line.stations, axis=0)), THESIS.xi)
     radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
     rod = Rod(line, radius, law, polar(2, 8), placement)
     system = System(rod, LineLayout(rod), (), np.zeros(SEATS))

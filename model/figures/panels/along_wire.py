@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.figures.panels.panel import Panel, axis, curve, said
+from coilset.model.figures.panels.panel import Panel, axis, curve, with_unit
 from coilset.model.figures.wire import inside, section_turns, shear_around
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
@@ -24,7 +24,7 @@ def stress_along_wire(run: Run) -> Panel:
     at = "" if turn is None else f" at turn {turn:.2f}"
     finding = "Shear stress along the wire"
     if stays is not None:
-        finding = f"{said(stays, 'MPa')} of shear remain at the inside of the coil{at}"
+        finding = f"{with_unit(stays, 'MPa')} of shear remain at the inside of the coil{at}"
     return Panel(
         "along_wire",
         finding,

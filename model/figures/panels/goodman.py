@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.figures.panels.panel import GREY, Panel, Trace, axis, curve, said
+from coilset.model.figures.panels.panel import GREY, Panel, Trace, axis, curve, with_unit
 from coilset.model.standards.goodman import Cycle, Line
 
 
@@ -18,7 +18,7 @@ def goodman(wire: str, permitted: Line, cycle: Cycle, residual: float | None) ->
         _cycle(cycle, 0, "working cycle, nominal"),
     ]
     if residual is not None:
-        traces.append(_cycle(cycle.shifted(residual), 1, f"with the computed residual {said(residual, 'MPa')}"))
+        traces.append(_cycle(cycle.shifted(residual), 1, f"with the computed residual {with_unit(residual, 'MPa')}"))
     allowed, span = permitted.stress_range(cycle.lower), cycle.upper - cycle.lower
     used = f"{100.0 * span / allowed:.0f} % of the permissible range" if allowed else "above the permissible range"
     finding = f"{wire}: the stress range of {span:.0f} MPa is {used}"

@@ -79,6 +79,6 @@ def upright(x: float, label: str) -> dict[str, Any]:
     return {"shapes": [{**line, "line": {"dash": "dash", "width": 1, "color": GREY}}], "annotations": [note]}
 
 
-def said(value: float, unit: str, digits: int = 0) -> str:
-    """A number with its unit, for use in text."""
-    return f"{value:z.{digits}f} {unit}".replace("-", "−")  # z: no −0
+def with_unit(value: float | None, unit: str, digits: int = 0, missing: str = "none") -> str:
+    """A number with its unit, for use in text; `missing` for None."""
+    return missing if value is None else f"{value:z.{digits}f} {unit}".replace("-", "−")  # z: no −0

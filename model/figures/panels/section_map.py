@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from coilset.model.base.style import round_end
-from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, said
+from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, with_unit
 from coilset.model.figures.rings import FilledSection
 from coilset.model.figures.wire import inside
 from coilset.model.results.files.opened import Run
@@ -52,7 +52,7 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
         traces.append(_map(section.places * radius, both[which], radius, end, number))
     dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
     traces.append({**dots, "hoverinfo": "skip", "showlegend": False})
-    low, high = (said(float(f(fields[-1][which])), "").strip() for f in (np.min, np.max))
+    low, high = (with_unit(float(f(fields[-1][which])), "").strip() for f in (np.min, np.max))
     finding = f"At {run.snapshots[-1]} the {quantity} at turn {turn:.2f} ranges from {low} to {high} MPa"
     return Panel(
         name,

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.style import round_end
-from coilset.model.figures.panels.panel import DIVERGING, Panel, axis, said
-from coilset.model.figures.wire import closed, moments, tubes
+from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, with_unit
+from coilset.model.figures.wire import closed, frames, tubes
 from coilset.model.results.files.opened import Run
 
 RINGS = 6000  # of all moments of a page together
@@ -35,18 +35,9 @@ def scene_of(corners: np.ndarray) -> dict[str, Any]:
     }
 
 
-def spring_view(run: Run) -> Panel:
-    """One tube per step, all on one scale."""
-    turns = float(np.ptp(run.data["turn"].values))
-    shown = moments(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
-    rings = min(PER_ELEMENT * (run.data.sizes["station"] - 1), RINGS // len(shown.labels)) + 1
-    places, stress = closed(*tubes(run, shown, rings))
-    end = round_end(float(np.abs(stress).max()))
-    frames = [
-        {**dict(zip("xyz", np.moveaxis(place, -1, 0), strict=True)), "surfacecolor": value}
-        for place, value in zip(places, stress, strict=True)
-    ]
-    trace = {
+def surface_trace(end: float) -> Trace:
+    """The look of a wire's surface, coloured by stresses up to `end`, MPa."""
+    return {
         "type": "surface",
         "cmin": -end,
         "cmax": end,
@@ -55,17 +46,32 @@ def spring_view(run: Run) -> Panel:
         "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
         "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
     }
+
+
+def shown_surface(places: np.ndarray, stress: np.ndarray) -> Trace:
+    """The places of a surface, shape (rings, angles, 3), and its colours."""
+    return {**dict(zip("xyz", np.moveaxis(places, -1, 0), strict=True)), "surfacecolor": stress}
+
+
+def spring_view(run: Run) -> Panel:
+    """One tube per step, all on one scale."""
+    turns = float(np.ptp(run.data["turn"].values))
+    shown = frames(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
+    rings = min(PER_ELEMENT * (run.data.sizes["station"] - 1), RINGS // len(shown.labels)) + 1
+    places, stress = closed(*tubes(run, shown, rings))
+    end = round_end(float(np.abs(stress).max()))
+    surfaces = [shown_surface(place, value) for place, value in zip(places, stress, strict=True)]
     corners = np.stack([places.reshape(-1, 3).min(axis=0), places.reshape(-1, 3).max(axis=0)])
-    low, high = (said(value, "MPa") for value in (stress[-1].min(), stress[-1].max()))
+    low, high = (with_unit(value, "MPa") for value in (stress[-1].min(), stress[-1].max()))
     return Panel(
         "spring",
         f"At {run.snapshots[-1]} the shear on the surface runs from {low} to {high}",
         f"The spring in three dimensions at {len(shown.labels)} moments of its load program, coloured by the shear "
         f"stress about the wire's axis on its surface from {-end:g} to {end:g} MPa. "
         f"At the end it is {low} to {high}.",
-        [trace],
+        [surface_trace(end)],
         scene_of(corners),
-        frames=frames,
+        frames=surfaces,
         moments=shown.labels,
         height=520,
         note="Red is sheared with the load, blue against it. Drag to rotate, scroll or pinch to zoom; the slider steps "

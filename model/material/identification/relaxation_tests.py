@@ -62,7 +62,7 @@ def read_relaxation(path: str | Path) -> Readings:
         if wrong.any():
             k = int(np.argmax(wrong))
             raise InputError(
-                f"{values[k]:g} must lie between {low:g} and {high:g}",
+                f"{values[k]:g} must be between {low:g} and {high:g}",
                 f"line {table.rows[k][0]}, column {name}",
                 table.path,
             )

@@ -35,7 +35,7 @@ ANEW = "use --overwrite instead of --resume to start again"
 
 @dataclass(frozen=True)
 class Saved:
-    """What a checkpoint holds.
+    """Content of a checkpoint.
 
     Attributes:
         arrays: name → array of the state in natural order.

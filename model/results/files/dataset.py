@@ -45,6 +45,7 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "wire_radius": Variable(("element",), radius, mm),
             "weight": Variable(of_points, weights),
             "curvature": Variable(("element", "gauss"), setup.placement.curvature, curvature),
+            "abscissa": Variable(("gauss",), setup.element.xi, {"about": "of the sections, over the element's length"}),
             "torsion": Variable(("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),
         },
         _coordinates(setup, snapshots),
@@ -97,7 +98,7 @@ def way_of_wire(result: Result) -> LabelledData:
     if not result.frames:
         return LabelledData({}, {})
     places, shear = (np.stack([getattr(frame, name) for frame in result.frames]) for name in ("x", "shear"))
-    about = "about the wire's axis, positive as in a compressed spring; mean of an element's two sections"
+    about = "about the wire's axis, positive as in a compressed spring; mean of an element's sections"
     return LabelledData(
         {
             "step_position": Variable(("step", "station", "axis"), places, {"units": "mm"}),

@@ -1,4 +1,4 @@
-"""The results folder: nothing is overwritten unless asked, and no file is ever left half written."""
+"""The results folder: nothing is overwritten without permission, and files are written whole or not at all."""
 
 import contextlib
 import csv
@@ -67,7 +67,7 @@ def make(folder: str | Path) -> None:
 
 @contextlib.contextmanager
 def making(folder: Path) -> Iterator[None]:
-    """Context in which what the system has against a results folder is an error of --out."""
+    """Context that reports errors of the file system as errors of --out."""
     try:
         yield
     except OSError as error:

@@ -1,5 +1,7 @@
 """Global balance: at every cut, force and moment in the wire balance the external loads before the cut."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from coilset.model.contact.resultants import station_forces, station_moments
@@ -9,22 +11,25 @@ from coilset.model.equilibrium.system import System
 from coilset.model.results.records.record import Snapshot
 
 
-def section_wrenches(x: np.ndarray, triads: np.ndarray, resultants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What the wire behind a cut does to the wire before it, for a cut through each element.
+def section_wrenches(
+    x: np.ndarray, triads: np.ndarray, resultants: np.ndarray, weights: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Force and moment of the wire behind a cut on the wire before it, for a cut through each element.
 
-    No load acts on an element between its nodes, so the force is the mean of its two Gauss sections, and the moment at
+    No load acts on an element between its nodes, so the force is the mean over its sections, and the moment at
     its first node follows from the virtual work of the strains (5.2.4): E (Mt, M2 − Q3 l/2, M3 + Q2 l/2).
 
     Args:
         x: station positions, shape (n + 1, 3), mm.
         triads: of the elements (columns), shape (n, 3, 3).
-        resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
+        resultants: N, Q2, Q3, Mt, M2, M3 at the sections, shape (n, sections, 6), N and N mm.
+        weights: of the sections.
 
     Returns:
         Forces and moments about the origin, shape (n, 3) each, N and N mm.
     """
     l = np.linalg.norm(np.diff(x, axis=0), axis=1)
-    N, Q2, Q3, Mt, M2, M3 = resultants.mean(axis=1).T
+    N, Q2, Q3, Mt, M2, M3 = np.einsum("ngi,g->in", resultants, weights)
     force = np.einsum("nij,jn->ni", triads, [N, Q2, Q3])
     moment = np.einsum("nij,jn->ni", triads, [Mt, M2 - 0.5 * Q3 * l, M3 + 0.5 * Q2 * l])
     return force, moment + np.cross(x[:-1], force)
@@ -54,7 +59,7 @@ def imbalance(shot: Snapshot, system: System, control: Heads) -> tuple[float, fl
     if system.comm.rank:
         return np.nan, np.nan
     before = np.cumsum(forces, axis=0), np.cumsum(np.cross(x, forces) + moments, axis=0)
-    behind = section_wrenches(x, shot.triads, shot.resultants)
+    behind = section_wrenches(x, shot.triads, shot.resultants, layout.rod.element.weights)
     lacking = [a + np.vstack([b, np.zeros(3)]) for a, b in zip(before, behind, strict=True)]
     force, moment = (float(np.linalg.norm(lack, axis=1).max()) for lack in lacking)
     return force, moment

@@ -88,13 +88,13 @@ def vanishing(points: Sequence[tuple[float, float]]) -> float:
 
 
 def _has_buckled(step: Step, diameter: float, critical: float) -> bool:
-    """Is it unstable, has it snapped, or has its axis deflected far, other than by the effect of its ends?"""
+    """Whether it is unstable, has snapped through, or its axis has deflected far, other than by its ends."""
     gone = step.axis_offset_mm > SIDEWAYS * diameter and not step.travel_mm < NEAR * critical
     return step.negative_pivots > 0 or snapped(step, diameter) or gone
 
 
 def snapped(step: Step, diameter: float) -> bool:
-    """Did the spring snap before this step and release a significant energy?"""
+    """Whether the spring snapped through before this step and released a significant energy."""
     return step.left_branch > 0 and step.released_energy_Nmm > SNAPPED * abs(step.force_N) * diameter
 
 

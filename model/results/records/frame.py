@@ -1,4 +1,4 @@
-"""The wire after a step: enough to show the spring on its whole way, a small part of what a snapshot holds."""
+"""The wire after a step: enough to draw the spring at every step, a small part of the data of a snapshot."""
 
 import base64
 from dataclasses import dataclass

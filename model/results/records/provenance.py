@@ -16,7 +16,7 @@ DIGEST_BYTES = 16
 
 
 def contents(case: Case) -> dict[str, str]:
-    """Digests of what the case refers to, by entry: constants of the material, file of the spring.
+    """Digests of the files that the case refers to, by entry: constants of the material, file of the spring.
 
     Raises:
         InputError: if a file cannot be read or is wrong.

@@ -12,6 +12,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
 from coilset.model.results.records.frame import Frame
+from coilset.model.rod.elements import Element
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
 
@@ -28,19 +29,19 @@ class Step:
         progress: part of the phase that is behind at its end.
         seat_height_mm: distance of the seats or heads; travel_mm: that of the unloaded spring, less this.
         cuts: how often it was cut.
-        contacts: closed contact elements; penetration_mm: the greatest of coils and seats.
-        force_N: axial force of the seats or heads on the spring, compression positive; 0 where a seat is left.
+        contacts: closed contact elements; penetration_mm: the maximum of coils and seats.
+        force_N: axial force of the seats or heads on the spring, compression positive; 0 after lift-off from a seat.
         negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
-        left_branch: 1 if the spring snapped on the way to it, from a path that ends or is unstable, else 0.
+        left_branch: 1 if the step includes a snap-through, from a path that ends or is unstable, else 0.
         released_energy_Nmm: potential energy that it lost then.
         axis_offset_mm: maximum distance by which a turn's mean has moved off the spring's axis.
-        least_eigenvalue: of the tangent, N/mm; None where it was not asked for.
+        least_eigenvalue: the lowest of the tangent, N/mm; None where it was not requested.
         plastic_work_max_N_per_mm2: maximum b* on the wire's surface.
         lift_off_mm: clearance between the wire and the seat that it has left; 0 while both seats press.
-        least_rise: least rise from a coil to the next, over the rise with which it lies on it; None where coils pass
+        least_rise: minimum rise from a coil to the next, over the rise at which they touch; None where coils pass
             each other by their shape, or there is only one.
-        estimated_force_error_N: what the length of the steps up to here has left wrong in the force, and
-            estimated_height_error_mm in the height at which this force would be; None where it is not known.
+        estimated_force_error_N: accumulated error of the force due to the step size, and
+            estimated_height_error_mm of the height at this force; None where it is unknown.
         hours: since the start, of a material that creeps.
         temperature_K: of the spring; at its start where plastic work heats it.
         load_loss_percent: of the force with which time began to pass, at constant height; None where no time passes.
@@ -86,9 +87,9 @@ class Snapshot:
         height, force: of the seats, mm and N.
         x: station positions, shape (n + 1, 3), mm.
         triads: element triads (columns), shape (n, 3, 3).
-        resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
-        point_state: at the section points, shape (n, 2, points, n_state), MPa.
-        surface_state: at the points on the wire's surface, shape (n, 2, surface points, n_state), MPa.
+        resultants: N, Q2, Q3, Mt, M2, M3 at the sections, shape (n, sections, 6), N and N mm.
+        point_state: at the section points, shape (n, sections, points, n_state), MPa.
+        surface_state: at the points on the wire's surface, shape (n, sections, surface points, n_state), MPa.
         components: names of the columns of both.
     """
 
@@ -104,16 +105,16 @@ class Snapshot:
 
     @property
     def shear(self) -> np.ndarray:
-        """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
+        """Magnitude of the shear stress at the section points, shape (n, sections, points), MPa."""
         return surface.shear(self.point_state, self.components)
 
 
 @dataclass(frozen=True)
 class ForceLine:
-    """Where a spring's force line is looked at.
+    """Planes and axis for the evaluation of a spring's force line.
 
     Attributes:
-        lower, upper: heights of two planes above the bottom seat of the unloaded spring, mm; None: not asked for.
+        lower, upper: heights of two planes above the bottom seat of the unloaded spring, mm; None: not requested.
         point, direction: of the damper's axis, mm, in the spring's coordinates; the direction of any length.
     """
 
@@ -125,16 +126,16 @@ class ForceLine:
 
 @dataclass(frozen=True)
 class SeatReaction:
-    """What one seat, or clamped head, does to the spring.
+    """Force and moment of one seat, or clamped head, on the spring, and its pose.
 
     Attributes:
-        force_N: axial force, compression positive; a seat that is left bears none.
+        force_N: axial force, compression positive; zero after lift-off.
         lateral_x_N, lateral_y_N: force across the axis, with that of a held tip.
         moment_x_Nmm, moment_y_Nmm, moment_z_Nmm: about the point where the axis meets the seat, with those of a held
             tip; z along the axis.
         centre_x_mm, centre_y_mm: where the resultant crosses the seat (force centre), from the axis.
         eccentricity_mm: its distance from the axis.
-        pressure_x_mm, pressure_y_mm: centre of the seat's pressure alone, without what a held tip takes.
+        pressure_x_mm, pressure_y_mm: centre of the seat's pressure alone, without the force on a held tip.
         length_mm: length of wire in contact with the seat, to the spacing of its points.
         down_turns: extent of the contact, turns from the wire's tip to the farthest place where it touches the seat.
         tilt_rad: angle between the seat's axis and the spring's.
@@ -169,19 +170,19 @@ class SeatReactions:
 
     Attributes:
         step: number of the step.
-        active_turns: turns that bear the load, ∫ (Mt/(F r))² dt: the number of turns under the torque F r throughout
+        active_turns: turns that carry the load, ∫ (Mt/(F r))² dt: the number of turns under the torque F r throughout
             that would hold as much torsional energy, as in R = G d⁴/(64 r³ n). On release, and up to the maximum force
-            so far, of the step's changes of Mt and F: a spring that has set keeps a torque that goes with no force.
+            so far, of the step's changes of Mt and F: a spring that has set keeps a torque without any force.
         free_turns: turns of wire that touch neither seat nor coil.
-        side_force_N: what the top head pushes the spring across the axis with.
+        side_force_N: force of the top head on the spring across the axis.
         line_lower_x_mm, line_lower_y_mm, line_upper_x_mm, line_upper_y_mm: where the force line, the line of action of
             the top head's force, crosses the two planes of the ForceLine; not numbers without one, or without a force.
         damper_moment_Nmm, damper_torque_Nmm: moment of the top head's reaction on the body above it, about the point of
             the damper: its size across the damper's axis, and its part about it.
         bottom, top: SeatReactions of the ends.
-        pressure: one row for each point of the wire that bears: number of the kind of contact, number of the point,
-            force per length of wire in N/mm; shape (m, 3). Between coils it is twice what the point itself has found,
-            for both wires look for each other with half of the bedding each.
+        pressure: one row for each point of the wire in contact: number of the kind of contact, number of the point,
+            force per length of wire in N/mm; shape (m, 3). Between coils it is twice the point's own force,
+            as each of both wires searches for the other with half of the bedding.
     """
 
     step: int
@@ -224,7 +225,7 @@ class ContactRecord:
     Attributes:
         name: for labels.
         end: `bottom` or `top` for a seat, else None.
-        wire_turns: turns of the points of the wire on which it bears, shape (m,); empty for kinds that do not.
+        wire_turns: turns of the points of the wire on which it acts, shape (m,); empty for kinds that have none.
     """
 
     name: str
@@ -239,13 +240,13 @@ class ContactRecord:
 
 @dataclass(frozen=True)
 class Limits:
-    """What the numbers of a run are held against.
+    """Limits with which the results of a run are compared.
 
     Attributes:
         plastic_work: b* up to which the material's constants are valid, N/mm².
-        strength: least tensile strength of the wire, MPa; None if no wire of a standard is named.
+        strength: minimum tensile strength of the wire, MPa; None if no wire of a standard is named.
         penetration: usual maximum penetration, mm.
-        accuracy: error by the steps' length that is asked for, over the maximum force and over the set; None: it is
+        accuracy: requested error due to the step size, over the maximum force and over the set; None: it is
             not estimated.
     """
 
@@ -257,7 +258,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Setup:
-    """What a run was made of.
+    """Description of a run: spring, mesh, load program, limits.
 
     Attributes:
         spring: geometry of the spring.
@@ -269,10 +270,11 @@ class Setup:
         rule: DiskRule.
         contacts: ContactRecords.
         section_kind: plane, curved or warping.
+        element: Element.
         placement: of the sections, Placement.
         buckling_travel: at which the spring buckles after EN 13906-1, mm; infinite if it never does.
         limits: Limits.
-        rates_at: travels, mm, at which the rate is asked for.
+        rates_at: travels, mm, at which the rate is requested.
         warnings: Warnings about the case, before it ran.
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
         force_line: ForceLine, or None.
@@ -287,6 +289,7 @@ class Setup:
     rule: DiskRule
     contacts: tuple[ContactRecord, ...]
     section_kind: str
+    element: Element
     placement: Placement
     buckling_travel: float
     limits: Limits
@@ -302,14 +305,12 @@ class Setup:
 
     @property
     def section_turns(self) -> np.ndarray:
-        """Turns at which the Gauss sections stand, shape (n, 2)."""
-        from coilset.model.rod.kinematics import GAUSS  # not where results are only read
-
-        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
+        """Turns of the sections, shape (n, sections)."""
+        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * self.element.xi
 
     @cached_property
     def inside(self) -> surface.Inside:
-        """Where the inside of the coil is on the wire's surface; plane sections know the curvature of a past."""
+        """Position of the inside of the coil on the wire's surface; plane sections have that of manufacture."""
         return surface.Inside.of(bool(self.placement.curvature.any()), self.spring.hand)
 
     @cached_property
@@ -326,13 +327,13 @@ class Setup:
 
 @dataclass(frozen=True)
 class BucklingMode:
-    """How a slender spring would go off its axis: the weakest mode of its tangent where that was least.
+    """Buckling mode of a slender spring: the weakest mode of the tangent at the step with its lowest eigenvalue.
 
     Attributes:
         travel_mm, force_N: of the step.
         eigenvalue: of the tangent there, N/mm.
         x: station positions, shape (n + 1, 3), mm.
-        displacement: of the stations, the greatest 1 mm, shape (n + 1, 3).
+        displacement: of the stations, maximum 1 mm, shape (n + 1, 3).
     """
 
     travel_mm: float
@@ -344,7 +345,7 @@ class BucklingMode:
 
 @dataclass(frozen=True)
 class Result:
-    """What a run has found up to now; `complete` is False if it ended before its program did.
+    """Results of a run so far; `complete` is False if it ended before its program did.
 
     Attributes:
         steps: converged Steps.

@@ -23,7 +23,7 @@ FAINT = 1e-6  # axial forces below this part of the largest one so far have no c
 
 
 Parts = Sequence[tuple[Contact, Contribution]]
-OnWire = Sequence[tuple[int, Any, Contribution]]  # contacts that bear on the wire (BearsOnWire), with their numbers
+OnWire = Sequence[tuple[int, Any, Contribution]]  # contacts that act on points of the wire, with their numbers
 
 
 def seat_reactions(
@@ -46,7 +46,7 @@ def seat_reactions(
         greatest_force: magnitude of the largest axial force so far, this one's included, N.
         before: axial force, N, and `mean_torque` of the last equilibrium but this.
         now: those of this one.
-        line: ForceLine, if it is asked for.
+        line: ForceLine, if it is requested.
 
     Returns:
         SeatReactions, the same on every rank.
@@ -69,8 +69,8 @@ def on_line(wrench: Wrench, line: ForceLine | None, faint: float) -> tuple[float
     """Where the line of a force crosses two planes, x and y of each, mm, and its moments for a damper, N mm.
 
     Args:
-        wrench: of the top head on the spring; on the body above it acts its opposite.
-        line: ForceLine; None: nothing is asked for.
+        wrench: of the top head on the spring; its opposite acts on the body above.
+        line: ForceLine; None: nothing is evaluated.
         faint: force that counts as none, N.
     """
     if line is None:
@@ -93,7 +93,7 @@ def faint_force(rod: Rod, greatest_force: float) -> float:
 
 
 class _Observer:
-    """Reads what acts at the ends of a spring."""
+    """Evaluates forces, moments and contact at the ends of a spring."""
 
     def __init__(self, system: System, control: Heads) -> None:
         assert isinstance(system.layout, LineLayout)
@@ -101,10 +101,10 @@ class _Observer:
         self.x = self.layout.gather(system.state["x"].trial)
         self.chart = self.layout.gather(self.layout.rod.chart)
         self.parts: Parts = list(zip(system.contacts, system.gathered_contacts(), strict=True))
-        self.on_wire: OnWire = [(kind, *self.parts[kind]) for kind, bears in enumerate(system.bearing) if bears]
+        self.on_wire: OnWire = [(kind, *part) for kind, part in enumerate(self.parts) if part[0].points is not None]
 
     def wrench(self, end: str) -> Wrench:
-        """Resultant of all that an end's seat, or its prescribed unknowns, exert on the wire."""
+        """Resultant of an end's seat, or of its prescribed unknowns, on the wire."""
         own = [part for contact, part in self.parts if contact.end == end]
         station, _ = self.control.tips[end]
         return Wrench.of_contacts(own, self.x, self.chart, station, self.control.on_tip(end))
@@ -163,8 +163,7 @@ class _Observer:
 
 def mean_torque(rod: Rod) -> np.ndarray:
     """Mt of the owned elements, the mean over each, N mm."""
-    torque = rod.coefficients.s[:, :, 3]
-    return 0.5 * (torque[:, 0] + torque[:, 1])
+    return rod.coefficients.s[:, :, 3] @ np.array(rod.element.weights)
 
 
 def active_turns(rod: Rod, turns: np.ndarray, force: float, torque: np.ndarray) -> float:
@@ -208,7 +207,7 @@ def pressures(parts: OnWire) -> np.ndarray:
 
 
 def free_turns(parts: OnWire, pressure: np.ndarray) -> float:
-    """Turns of wire that touch nothing, weighted by the turns assigned to each point."""
+    """Turns of wire without contact, weighted by the turns assigned to each point."""
     if not parts:
         return float("nan")
     return turns_without(parts[0][1].points.share_of_turns, pressure)

@@ -105,7 +105,7 @@ def step_errors(result: Result, release: Release | None) -> dict[str, Any]:
 
 
 def is_middle(setup: Setup) -> np.ndarray:
-    """Whether sections lie in the middle turns: a turn from the tips, or from the end coils of closed ends."""
+    """Whether sections are in the middle turns: a turn from the tips, or from the end coils of closed ends."""
     spring = setup.spring
     first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
     return surface.is_middle(setup.section_turns, first, last)

@@ -21,7 +21,7 @@ def entry(unit: str, text: str, of_slice: bool = True) -> Any:
 
 @dataclass(frozen=True)
 class Summary:
-    """The main numbers of a run, in the order of summary.json; what is unknown (no release, no block) is None."""
+    """The main numbers of a run, in the order of summary.json; unknown entries (no release, no block) are None."""
 
     complete: bool = entry("", "whether the run went through its whole load program")
     free_length_before_mm: float = entry("mm", "outer length of the unloaded spring")
@@ -55,7 +55,7 @@ class Summary:
         of_slice=False,
     )
     force_max_N: float = entry("N", "the force of largest magnitude in any step")
-    block_height_mm: float = entry("mm", "height at which each coil lies on the next, by geometry")
+    block_height_mm: float = entry("mm", "height at which each coil touches the next, by geometry")
     residual_shear_max_MPa: float | None = entry(
         "MPa",
         "maximum shear stress on the wire's surface after release, in the middle turns: a turn from the tips, or "

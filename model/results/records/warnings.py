@@ -22,7 +22,7 @@ Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
 def run_warnings(setup: Setup, result: Result) -> list[Warning]:
-    """All warnings of a run: those about its case, those of its steps, those about what it has found.
+    """All warnings of a run: about its case, its steps, and its results.
 
     Args:
         setup: Setup.
@@ -38,12 +38,12 @@ def step_warnings(setup: Setup, result: Result) -> list[Warning]:
 
 
 def accuracy_warning(error: float, asked: float, place: str, of: str = "the force", size: str = "") -> Warning | None:
-    """A step whose estimated error is above the accuracy that was asked for; both are relative.
+    """A step whose estimated error exceeds the requested accuracy; both are relative.
 
     Args:
         error, asked: parts of 1.
         place: where the error is.
-        of: what is wrong by it; size: how much that is, in words.
+        of: the quantity with this error; size: the error in words.
     """
     if error <= asked:
         return None
@@ -93,7 +93,7 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
         least, place = min(_rise(step) for step in result.steps), _place(first)
         message = (
             f"coils have slipped past each other since {place}: the rise from one to the next is {least:.2g} of that "
-            "of coils that lie on each other; contact.friction.coils may hold them"
+            "of coils stacked on each other; friction between coils (contact.friction.coils) may hold them"
         )
         yield Warning("coils slipped", place, message, least, SLIPPED)
 
@@ -110,8 +110,9 @@ def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
         if percent > WALL:
             height = accuracy * step.force_N / abs(rate)
             message = (
-                f"at {_place(step)} the force changes by {rate:.3g} N/mm: the spring stands on a wall, as its coils "
-                f"are closed or slip, and {100 * accuracy:.2g} % of the force correspond to {height:.2g} mm of height"
+                f"at {_place(step)} the force changes by {rate:.3g} N/mm: the characteristic is "
+                f"nearly vertical, as coils are closed or slip, and {100 * accuracy:.2g} % of the force correspond to "
+                f"{height:.2g} mm of height"
             )
             yield Warning("wall", _place(step), message, percent, WALL)
 
@@ -161,7 +162,7 @@ def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
         message = (
             f"the spring snapped through at a travel of {step.travel_mm:.5g} mm, from {force:.5g} N to "
             f"{step.force_N:.5g} N, and released {step.released_energy_Nmm:.2g} N mm{times}: several branches exist, "
-            "and it came to rest on the one that a slow snap leads to"
+            "and the one reached by slow snap-through was kept"
         )
         yield Warning("snapped", _place(step), message, step.released_energy_Nmm, 0.0, "N mm")
 

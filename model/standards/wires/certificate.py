@@ -16,7 +16,7 @@ ASSUMED = (
 
 @dataclass(frozen=True)
 class Certificate:
-    """What a certificate of a wire states, MPa.
+    """Values on a wire's certificate, MPa.
 
     Attributes:
         strength: tensile strength Rm.
@@ -39,7 +39,7 @@ class Certificate:
 
     @property
     def assumptions(self) -> str:
-        """What the material made of it rests on, in a sentence."""
+        """Basis of the material made from it, in a sentence."""
         if self.given_limit is not None:
             return ASSUMED
         limit = f"elastic limit of {self.elastic_limit:.4g} MPa estimated: the proof stress halfway between it and Rm"

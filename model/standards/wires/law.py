@@ -49,7 +49,7 @@ def wire_law(name: str, diameter: float, spin: bool = False) -> Law:
         Law at 20 °C, valid up to the plastic work at uniform strain.
 
     Raises:
-        InputError: an unknown wire, or a diameter for which its strength is not known.
+        InputError: an unknown wire, or a diameter without a known strength.
     """
     known = wire(name)
     elastic, found = known.elastic(diameter), hardening_curve(known, diameter)
@@ -85,7 +85,7 @@ def case_elastic(case: Case, law: Law) -> Elastic:
     """Moduli of a case's material at the temperature of its spring, and the density of steel.
 
     Raises:
-        InputError: a temperature that the material does not know.
+        InputError: a temperature outside the material's table.
     """
     if isinstance(case.material, str):
         check_known(law, case.temperature, "temperature")

@@ -35,7 +35,8 @@ class Wire:
         if value is None:
             ranges = " and ".join(f"{low:g} to {high:g}" for low, high in self.ranges)
             raise InputError(
-                f"the strength of '{self.name}' is not known at {diameter:g} mm; known for {ranges} mm", "material.wire"
+                f"the strength of '{self.name}' is unknown at {diameter:g} mm; it is given for {ranges} mm",
+                "material.wire",
             )
         return value
 

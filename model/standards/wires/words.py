@@ -29,7 +29,7 @@ LABELS = {
 
 
 def described(wire: Wire) -> list[tuple[str, str, str]]:
-    """What, the number over the diameter d in mm, and its certainty with sources, of all that is known of a wire."""
+    """All data of a wire: quantity, value over the diameter d in mm, and certainty with sources."""
     found = []
     for name, entry in wire.entry.sourced():
         label, unit = LABELS.get(name, (name, "MPa"))

@@ -24,7 +24,6 @@ from coilset.meshes.springs.placement import gauss_points
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
 from coilset.model.results.records.record import Step
-from coilset.model.rod.kinematics import GAUSS
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
 
@@ -42,8 +41,8 @@ class Ledger:
 
     def __init__(self, analysis: Analysis) -> None:
         self.analysis, turns = analysis, analysis.setup.turns
-        _, _, length = gauss_points(analysis.spring, turns[:-1], turns[1:], GAUSS)
-        section = np.pi * analysis.setup.wire_radius[:, None] ** 2 * 0.5 * length
+        _, _, length = gauss_points(analysis.spring, turns[:-1], turns[1:], analysis.rod.element.xi)
+        section = np.pi * analysis.setup.wire_radius[:, None] ** 2 * length * analysis.rod.element.weights
         points, κ = analysis.rod.rule, analysis.setup.placement.curvature
         g = 1.0 - κ[..., None] * analysis.setup.wire_radius[:, None, None] * points.points[:, 0]  # fibre over axis
         self.volume = section[..., None] * g * points.weights

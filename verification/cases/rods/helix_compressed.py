@@ -20,7 +20,8 @@ from coilset.meshes.springs.placement import section_placement
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.style import STYLE
 from coilset.model.material import library
-from coilset.model.rod.kinematics import GAUSS, chord_triads
+from coilset.model.rod.elements import THESIS
+from coilset.model.rod.kinematics import chord_triads
 from coilset.verification.chain import ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, drive
 from coilset.verification.references.rod_shooting import Stiffness
 from coilset.verification.references.uniform_helix import Helix, deformed
@@ -39,7 +40,7 @@ def press(pitch: float, helix: Helix, mesh: int) -> tuple[float, float, np.ndarr
     spring = SpringSpec(wire_diameter=WIRE, mean_diameter=DIAMETER, turns=TURNS, pitch=pitch).build()
     turns = np.linspace(0.0, TURNS, TURNS * mesh + 1)
     nodes, last = spring.centre_line(turns), TURNS * mesh
-    placement = section_placement(spring, turns, chord_triads(np.diff(nodes, axis=0)), GAUSS)
+    placement = section_placement(spring, turns, chord_triads(np.diff(nodes, axis=0)), THESIS.xi)
     frame = chain(nodes, 0.5 * WIRE, library.load("elastic"), held=(), placement=placement)
     rise = pitch / (2.0 * np.pi)
     tilt = helix.inclination - np.arctan2(rise, 0.5 * DIAMETER)

@@ -1,4 +1,4 @@
-"""What a run prints while it is in progress: lines to read, lines of JSON, or only warnings."""
+"""Output of a run while it is in progress: lines to read, lines of JSON, or only warnings."""
 
 import contextlib
 import json
@@ -6,18 +6,21 @@ import logging
 import os
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
-from coilset.model.results.records.record import Step
+from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.run.analysis import Analysis
 from coilset.scripts.terminal.console import Console
-from coilset.scripts.terminal.step_words import HEAD, contact_words, quantity, step_row
 
+if TYPE_CHECKING:  # not where a rod is solved
+    from coilset.model.slice.analysis import SliceStep
+
+HEAD = f"{'step':>5}{'height/mm':>10}{'force/N':>12}{'iter.':>6}"  # of `step_row`
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
 
 
@@ -66,7 +69,7 @@ class Lines:
         self.console.print(row, soft_wrap=True)
 
     def _left(self, step: Step) -> str:
-        """Remaining time at the speed so far; empty if it is short, or too early to tell."""
+        """Remaining time at the speed so far; empty if it is short, or unknown."""
         spent, done = time.monotonic() - self._began, _done(self.analysis, step)
         left = spent * (1.0 - done) / max(done - self._from, 1e-9)
         return "" if spent < SOON or left < SOON else f"  [dim]{duration(left)} left[/]"
@@ -87,7 +90,7 @@ class Lines:
             log.setLevel(logging.NOTSET)
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
-        """What was found."""
+        """Print the results."""
         table = Table(show_header=False, box=None, padding=(0, 2))
         table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
         for number, release in enumerate(summary["releases"][:-1], 1):
@@ -126,7 +129,7 @@ class Quiet(Lines):
         """Nothing."""
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
-        """The warnings that were not told at the beginning."""
+        """The warnings that were not printed at the beginning."""
         told = {warning.message for warning in self.analysis.setup.warnings}
         for warning in summary["warnings"]:
             if warning["message"] not in told:
@@ -148,7 +151,7 @@ class JsonLines(Lines):
         self._put("warning", message=text)
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
-        """What is solved."""
+        """The case, its mesh and its load program."""
         super().begin(analysis, case_file, resumed)
         self._put(
             "begin",
@@ -184,6 +187,35 @@ def _done(analysis: Analysis, step: Step | None = None) -> float:
     if step is None:
         step = analysis.result.steps[-1] if analysis.result.steps else None
     return 0.0 if step is None else (step.phase + step.progress) / len(analysis.case.loading)
+
+
+def step_row(step: "Step | SliceStep") -> str:
+    """The columns common to the steps of rod and slice, under HEAD."""
+    force = without_minus(step.force_N, 3)
+    return f"{step.number:5d}{step.seat_height_mm:10.4f}{force:>12}{step.iterations:6d}"
+
+
+def quantity(value: float | None, unit: str, digits: int = 4) -> str:
+    """A value with its unit; `none` where the run gave none, as of a spring that was not released."""
+    return "none" if value is None else f"{without_minus(value, digits)} {unit}"
+
+
+def without_minus(value: float, digits: int) -> str:
+    """A value with a number of decimals, without -0.0."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def contact_words(kinds: Sequence[ContactRecord], reactions: SeatReactions) -> str:
+    """Which kinds of contact press on the wire: `both seats, coils`, `bottom seat`, or `no contact`.
+
+    Args:
+        kinds: of the Setup.
+        reactions: of the step.
+    """
+    names = [kinds[number].name for number in sorted({int(row[0]) for row in reactions.pressure if row[2] > 0.0})]
+    if {"bottom seat", "top seat"} <= set(names):
+        names = ["both seats", *(name for name in names if not name.endswith(" seat"))]
+    return ", ".join(names) or "no contact"
 
 
 class _Handler(logging.Handler):

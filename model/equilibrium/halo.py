@@ -1,4 +1,4 @@
-"""What a rank must know of the other parts of the wire to evaluate the contacts that act on its own unknowns.
+"""Halo of a rank: the stations of other ranks on which the contacts that act on its own unknowns depend.
 
 Each rank tells the box around its stations to all others, and sends each the stations of its own that lie within the
 contacts' reach of that one's box; to the last rank, which owns the seats' unknowns, also those that may act on a seat.
@@ -10,18 +10,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coilset.model.contact.base import ActsNearby, Contact, Known, TrialPositions
+from coilset.model.contact.base import Contact, Known, TrialPositions
 from coilset.model.contact.curve import STENCIL
 from coilset.model.equilibrium.layout import LineLayout
 
 NUMBER, PLACE, ROTATION = 0, slice(1, 4), slice(4, 7)  # columns of what is sent for a station
-BOX, MOTION, SPAN, LONGEST = slice(6), slice(6, 12), slice(12, 15), 15  # in what a rank tells of its part
+BOX, MOTION, SPAN, LONGEST = slice(6), slice(6, 12), slice(12, 15), 15  # in what a rank sends of its part
 
 
-class Surroundings:
+class Halo:
     """Positions on trial, of this rank's part of the wire and of what is near it.
 
-    If some kind of contact cannot be evaluated from nearby stations alone, every rank knows all stations.
+    If some kind of contact cannot be evaluated from nearby stations alone, every rank has all stations.
 
     Args:
         layout: LineLayout.
@@ -30,7 +30,7 @@ class Surroundings:
 
     def __init__(self, layout: LineLayout, contacts: Sequence[Contact]) -> None:
         self.layout, self.comm = layout, layout.comm
-        self._nearby = [contact for contact in contacts if isinstance(contact, ActsNearby)]
+        self._nearby = [contact for contact in contacts if contact.aside is not None]
         self._own, n = layout.own_stations, len(layout.station_dofs)
         self._all = layout.comm.size == 1 or len(self._nearby) < len(contacts) or n < STENCIL
         if self._all:
@@ -38,7 +38,7 @@ class Surroundings:
         self._is_own = np.zeros(n, dtype=bool)
         self._is_own[self._own] = True
         self._along = np.argsort(self._own)
-        self._aside = max((contact.aside for contact in self._nearby), default=0)
+        self._aside = max((contact.aside or 0 for contact in self._nearby), default=0)
         self._x, self._rotations = np.zeros((n, 3)), np.zeros((n, 3))
         self._last, self._way = np.zeros((len(self._own), 3)), 0.0  # own stations of the last call; see Known
 
@@ -74,17 +74,17 @@ class Surroundings:
             axis at most, shape (3,); the longest distance of neighbouring stations; mm.
         """
         own = x[self._along]
-        mine, told = np.empty(16), np.empty((self.comm.size, 16))
+        mine, boxes = np.empty(16), np.empty((self.comm.size, 16))
         mine[BOX], mine[MOTION] = box_around(own).ravel(), box_around(own - self._last).ravel()
         mine[SPAN], mine[LONGEST] = span_along(own, self._aside), longest_cell(x, self.layout.rod.cells)
         self._last = own
-        self.comm.Allgather(mine, told)
-        motions = told[:, MOTION].reshape(-1, 2, 3)
+        self.comm.Allgather(mine, boxes)
+        motions = boxes[:, MOTION].reshape(-1, 2, 3)
         self._way += float(np.linalg.norm(motions[:, 1].max(axis=0) - motions[:, 0].min(axis=0)))
-        return told[:, BOX].reshape(-1, 2, 3), told[:, SPAN].max(axis=0), float(told[:, LONGEST].max())
+        return boxes[:, BOX].reshape(-1, 2, 3), boxes[:, SPAN].max(axis=0), float(boxes[:, LONGEST].max())
 
     def _near(self, rank: int, boxes: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """Which of the own stations, at `x`, another rank must be told, bool; none for this rank itself."""
+        """Which of the own stations, at `x`, another rank needs, bool; none for this rank itself."""
         if rank == self.comm.rank:
             return np.zeros(len(x), dtype=bool)
         near = in_box(x, boxes[rank], max(contact.reach for contact in self._nearby) + 2.0 * span)
@@ -109,7 +109,7 @@ def box_around(x: np.ndarray) -> np.ndarray:
 
 
 def in_box(x: np.ndarray, box: np.ndarray, reach: np.ndarray) -> np.ndarray:
-    """Which of some positions, shape (n, 3), lie within `reach`, shape (3,), of a box; shape (n,), bool."""
+    """Which of some positions, shape (n, 3), are within `reach`, shape (3,), of a box; shape (n,), bool."""
     return ((box[0] - reach <= x) & (x <= box[1] + reach)).all(axis=1)
 
 

@@ -8,7 +8,7 @@ import pytest
 from mpi4py import MPI
 
 from coilset.scripts.commands.solve import solve
-from coilset.scripts.terminal.telling import Lines, duration
+from coilset.scripts.terminal.progress import Lines, duration
 
 SEATS = ["both seats"]
 CASE = """

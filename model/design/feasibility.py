@@ -1,4 +1,4 @@
-"""What no spring between the bounds of a design can be or do, refused before any is run."""
+"""Conditions that no spring between the bounds of a design can meet, refused before any run."""
 
 import itertools
 from collections.abc import Iterator, Sequence
@@ -12,7 +12,7 @@ from coilset.model.design.conditions import Condition, without_limit
 from coilset.model.design.evaluation import Evaluator
 
 
-def refuse_beforehand(evaluator: Evaluator, conditions: Sequence[Condition], bounds: np.ndarray) -> None:
+def refuse_infeasible(evaluator: Evaluator, conditions: Sequence[Condition], bounds: np.ndarray) -> None:
     """Look at the springs in the corners of the bounds and in their middle.
 
     Args:

@@ -1,0 +1,65 @@
+"""The height at which a spring is solid, from its geometry: coils that lie on each other, pass each other, or stack.
+
+Two wires of diameters d₁, d₂ that one meridian cuts at radii r₁, r₂ touch where the upper one stands
+s = √(d² − (r₂ − r₁)²) above the lower one, d = ½ (d₁ + d₂); where |r₂ − r₁| ≥ d they pass each other. The block height
+is the greater of two:
+
+- **each coil on the next**: from the turn t to t + 1 the wire rises by s(t). A pitch p with ∫ p = s over each turn is
+  s(t − ½) at t, to second order; over the first and the last half turn it is constant. So n turns rise by
+  ∫ s dt + ½ (s(0) + s(n − 1)). The ends contribute what the wire and its grinding contribute to the free length.
+- **the highest stack**: on each meridian the wires stand above each other between the seats, each at least s above
+  every one below it, its neighbour or not. No spring whose coils keep their radii goes below the highest of these
+  stacks. It is the greater of the two where coils of both flanks of a double cone or a barrel, which pass their
+  neighbours, come to rest on each other.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coilset.meshes.springs import functions
+from coilset.meshes.springs.ends import touching_pitch
+
+if TYPE_CHECKING:
+    from coilset.meshes.springs.geometry import Spring
+
+MERIDIANS = 64
+
+
+def block_height(spring: "Spring") -> float:
+    """Distance between the seats at which a spring is solid, mm."""
+    return max(_each_on_the_next(spring), _highest_stack(spring))
+
+
+def _each_on_the_next(spring: "Spring") -> float:
+    ends = spring.free_length - (spring.height(spring.turns) - spring.height(0.0))
+    n = spring.turns
+    if n <= 1.0:  # no coil has a next one; the pitch of a coil that goes on
+        mean = 0.5 * (spring.wire(0.0) + spring.wire(n))
+        return float(n * touching_pitch(mean, (spring.radius(n) - spring.radius(0.0)) / n) + ends)
+
+    def rise(turn: np.ndarray | float) -> np.ndarray:
+        """From each turn t ≤ n − 1 to the next where the two touch, mm."""
+        t = np.asarray(turn, dtype=float)
+        wire = 0.5 * (spring.wire(t) + spring.wire(t + 1.0))
+        return touching_pitch(wire, spring.radius(t + 1.0) - spring.radius(t))
+
+    marks = np.unique(np.concatenate([spring.breaks, spring.breaks - 1.0]))  # of r and d at t, and at t + 1
+    inside = marks[(marks > 0.0) & (marks < n - 1.0)]
+    within = functions.integral(rise, np.concatenate([[0.0], inside, [n - 1.0]])).sum()
+    return float(within + 0.5 * (rise(0.0) + rise(n - 1.0)) + ends)
+
+
+def _highest_stack(spring: "Spring") -> float:
+    """Greatest height of the wires that lie above each other on any meridian, mm."""
+    meridians = np.append(np.arange(MERIDIANS) / MERIDIANS, spring.turns % 1.0)  # the last one: of the top tip
+    t = np.arange(int(spring.turns) + 1)[:, None] + meridians
+    there = t <= spring.turns
+    t = np.minimum(t, spring.turns)
+    r, d = spring.mean_radius(t), spring.wire_diameter(t)
+    level = spring.seat_distance(t, "bottom")
+    for i in range(1, len(t)):
+        rise = touching_pitch(0.5 * (d[:i] + d[i]), r[i] - r[:i])
+        resting = np.where(rise > 0.0, level[:i] + rise, -np.inf)
+        level[i] = np.maximum(level[i], resting.max(axis=0))
+    return float(np.where(there, level + spring.seat_distance(t, "top"), 0.0).max())
