@@ -79,7 +79,7 @@ class Coils(Contact):
             none,
         )
         self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
-        self._last: tuple[TrialPositions, Pressed] | None = None  # for friction, which requires the same pairs
+        self._last: tuple[TrialPositions, Pressed] | None = None  # of the last evaluation, for friction
 
     def places(self, pair: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Indices of pairs into arrays of points and places, see `place`."""
@@ -102,12 +102,10 @@ class Coils(Contact):
             self._room = 2 * found
 
     def pressed(self, trial: TrialPositions) -> Pressed:
-        """As `_pressed`; what it found is kept for the last trial state."""
-        if self._last is None or self._last[0] is not trial:
-            self._last = trial, self._pressed(trial)
-        return self._last[1]
+        """`search`, or what the evaluation of this very trial state has found."""
+        return self._last[1] if self._last is not None and self._last[0] is trial else self.search(trial)
 
-    def _pressed(self, trial: TrialPositions) -> Pressed:
+    def search(self, trial: TrialPositions) -> Pressed:
         """Pairs in contact, with ξ and gaps, their offsets, and the points' positions; these only if there are pairs.
 
         Nothing is sought while no two points can have come closer by the gap that was found clear. The weights of a
@@ -140,7 +138,8 @@ class Coils(Contact):
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces along the connection of closest points, where these touch."""
-        pressed = self.pressed(trial)
+        pressed = self.search(trial)
+        self._last = trial, pressed
         if not len(pressed.pair):
             return self._nothing
         room = Contribution.room(len(pressed.pair), PAIR)

@@ -69,7 +69,8 @@ class Friction(Contact):
         self.memory = Memory(rows, traction=traction, x=stations, seats=seats)
         self.first_rotation = 3 * n + 2 * SEAT_DOFS  # number of the first degree of freedom of the stations' rotations
         self._iterate = np.zeros((*traction.shape[:-1], FORESEEN))  # of the tangent before
-        self._trial = (np.empty(0, np.int64),), np.empty((0, FORESEEN))  # of the last evaluation
+        self._trial: tuple[tuple[np.ndarray, ...], np.ndarray]  # of the last evaluation, where it bears
+        self._trial = (np.empty(0, np.int64),), np.empty((0, FORESEEN))
 
     @abstractmethod
     def touching(self, trial: TrialPositions) -> tuple[np.ndarray, ...]:
@@ -86,8 +87,8 @@ class Friction(Contact):
         Args:
             trial: TrialPositions.
             at: as `touching` has found.
-            tractions: of the last equilibrium, and written, of now, shape (m, 3), N; what is kept of the iterate before,
-                overwritten by the same of now, shape (m, FORESEEN).
+            tractions: of the last equilibrium, and written, of now, shape (m, 3), N; what is kept of the iterate
+                before, overwritten by the same of now, shape (m, FORESEEN).
             room: written, forces and stiffness, shapes (m, k) and (m, k, k).
         """
 

@@ -74,8 +74,8 @@ def test_taylor_remainders_are_of_second_and_third_order(angle):
 
 @pytest.mark.parametrize("angle", ANGLES)
 def test_tangent_of_the_chart_is_the_compiled_one_and_changes_as_its_derivatives(angle):
-    """The kernel's 1 − cos α loses digits where its series ends: 4e-14 of T at 1.1e-3 rad. Central differences of T with
-    h = 1e-5 are good to 1e-10. T is the spin of R: R,k Rᵀ = [T e_k]."""
+    """The kernel's 1 − cos α loses digits where its series ends: 4e-14 of T at 1.1e-3 rad. Central differences of T
+    with h = 1e-5 are good to 1e-10. T is the spin of R: R,k Rᵀ = [T e_k]."""
     θ, h, compiled = vector(angle), 1e-5, np.empty((3, 3))
     T, dT = chart_derivatives(θ)
     kernels.chart_tangent(θ, compiled)
