@@ -53,6 +53,7 @@ from coilset.model.results.run_files import write_run
 from coilset.model.run.analysis import Analysis
 from coilset.model.runtime.processes import usable_cores
 from coilset.model.runtime.threads import usual
+from coilset.model.sweep.study import Study as _Study
 
 __all__ = [
     "Case",
@@ -63,6 +64,7 @@ __all__ = [
     "Result",
     "SolveError",
     "Step",
+    "Study",
     "design",
     "material",
     "slice_",
@@ -367,9 +369,9 @@ def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwri
     True
     """
     from coilset.model.sweep import dataset
+    from coilset.model.sweep.engines.processes import Workers
     from coilset.model.sweep.journal import Journal
     from coilset.model.sweep.plan import Plan
-    from coilset.model.sweep.pools import Workers
     from coilset.model.sweep.run import finished, missing, run
 
     checked, folder = Plan(plan), Path(folder)
@@ -382,10 +384,27 @@ def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwri
         workers.pool(folder / "workers.log") as pool,
         closing(Journal(path)) as journal,
     ):
-        run(checked, missing(checked, finished(path, retry=False)), pool, journal)
-    data = dataset.collect(checked, path)
+        run(checked, missing(checked, finished(folder, retry=False)), pool, journal)
+    data = dataset.collect(checked, folder)
     dataset.write(folder / "sweep.nc", data)
     return data
+
+
+class Study(_Study):
+    """A sweep whose cases another program chooses or computes: ask for cases, tell their results.
+
+    Results are kept in a journal as `sweep` keeps them, so that an interrupted study goes on. `ask` gives cases of the
+    plan, or those with given inputs; `evaluate` computes them in processes of this machine; `tell` keeps results from
+    elsewhere; `results` is the data set of all. Release the folder by `close`.
+
+    >>> import tempfile
+    >>> study = Study("examples/sweeps/preset_height.yaml", tempfile.mkdtemp())
+    >>> trial = study.ask()[0]
+    >>> study.tell(trial.key, {"set_mm": 12.5})
+    >>> float(study.results()["set_mm"][0])
+    12.5
+    >>> study.close()
+    """
 
 
 @dataclass(frozen=True)
