@@ -4,7 +4,7 @@ Coordinates (ξ, η), mm: ξ points away from the coil's axis, η upwards along 
 line, whose radius is half the mean diameter; shapes are centred on it by the middle of their width and height.
 """
 
-import csv
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Protocol
 import gmsh
 import numpy as np
 
+from coilset.model.base.columns import number, read_rows
 from coilset.model.base.errors import InputError, naming
 
 CLOSEST = 1e-6  # distance below which two points of an outline are one, over its size
@@ -127,22 +128,13 @@ class Curve:
         Raises:
             InputError: if it cannot be read, with the line.
         """
-        try:
-            with open(path, newline="", encoding="utf-8-sig") as file:
-                rows = [(number, row) for number, row in enumerate(csv.reader(file), 1) if any(map(str.strip, row))]
-        except (OSError, UnicodeDecodeError) as error:
-            raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "", path) from None
-        points = []
-        for number, row in rows:
-            try:
-                ξ, η = map(float, row)
-            except ValueError:
-                if number == rows[0][0] and not any(map(_is_number, row)):
-                    continue  # the columns' names
-                raise InputError(
-                    f"'{','.join(row)}' is not a pair of numbers ξ, η in mm", f"line {number}", path
-                ) from None
-            points.append((ξ, η))
+        rows, points = read_rows(path), []
+        for line, row in rows:
+            pair = [number(text) for text in row]
+            if len(pair) == 2 and all(map(math.isfinite, pair)):
+                points.append(pair)
+            elif line != rows[0][0] or any(map(math.isfinite, pair)):  # otherwise the columns' names
+                raise InputError(f"'{','.join(row)}' is not a pair of numbers ξ, η in mm", f"line {line}", path)
         with naming(path):
             return cls(np.array(points), smooth)
 
@@ -152,14 +144,6 @@ class Curve:
             return _rounded(self.points, 0.0)
         tags = [gmsh.model.occ.addPoint(ξ, η, 0) for ξ, η in self.points]
         return [gmsh.model.occ.addSpline([*tags, tags[0]])]
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def signed_area(points: np.ndarray) -> float:

@@ -13,6 +13,7 @@ from coilset.meshes.springs.checks import refuse
 from coilset.meshes.springs.ends import OPEN, Ends, bottom_and_top
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.shapes import Length
+from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError
 from coilset.model.base.schema import Strict
 
@@ -118,28 +119,13 @@ def read_centre_line(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
 
 
 def _read_csv(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
-    """Columns x, y, z and perhaps wire_diameter, named in the first line, separated by commas."""
-    try:
-        text = path.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise InputError("it is not a text file", "", path) from None
-    lines = [(number, line) for number, line in enumerate(text, 1) if line.strip()]
-    first, head = lines[0] if lines else (1, "")
-    names = [name.strip() for name in head.split(",")]
-    if names not in (["x", "y", "z"], ["x", "y", "z", WIRE_DIAMETER]):
-        problem = f"the columns must be x,y,z or x,y,z,{WIRE_DIAMETER}, not {','.join(names)!r}"
-        raise InputError(problem, f"line {first}", path)
-    rows = []
-    for number, line in lines[1:]:
-        try:
-            row = [float(text) for text in line.split(",")]
-        except ValueError:
-            row = []
-        if len(row) != len(names):
-            raise InputError(f"{line.strip()!r}: must be {len(names)} numbers", f"line {number}", path)
-        rows.append(row)
-    table = np.array(rows).reshape(-1, len(names))
-    return table[:, :3], table[:, 3] if len(names) > 3 else None
+    """Columns x, y, z and perhaps wire_diameter."""
+    table = read_columns(path)
+    if table.names not in (("x", "y", "z"), ("x", "y", "z", WIRE_DIAMETER)):
+        problem = f"the columns must be x,y,z or x,y,z,{WIRE_DIAMETER}, not {','.join(table.names)!r}"
+        raise InputError(problem, f"line {table.head}", path)
+    points = np.column_stack([table.numbers(name) for name in table.names]).reshape(-1, len(table.names))
+    return points[:, :3], points[:, 3] if points.shape[1] > 3 else None
 
 
 def _read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray | None]:

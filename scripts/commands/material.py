@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coilset.model.base.errors import InputError, naming
+from coilset.scripts.commands.learning import springs
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target, results_folder
@@ -19,7 +20,12 @@ if TYPE_CHECKING:  # commands load what they need
     from coilset.model.material.programs import History, Program
     from coilset.scripts.terminal.console import Console
 
-app = typer.Typer(help="Show a material, test it at one point, or fit it to test data.", no_args_is_help=True)
+app = typer.Typer(
+    cls=springs.MaterialGroup,
+    help="Show a material, test it at one point, or fit it to test data.",
+    no_args_is_help=True,
+)
+app.command(springs.NAME)(springs.fit_springs)
 MATERIAL = typer.Argument(help="name in the library, or path of a material file")
 DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension strain, stress")
 RELAXATION = typer.Argument(help="relaxation tests (CSV): columns hours, temperature, loss, stress or shear_stress")
@@ -127,7 +133,8 @@ def fit(
 ) -> None:
     """Identify material constants: k² from tension tests, with reversed torsion and tension-torsion also ζ and κ.
 
-    With --back-stresses: a yield stress, its rise, and several back stresses from cyclic tests in one direction.
+    With --spring: from presses of springs, see `fit-springs`. With --back-stresses: a yield stress, its rise, and
+    several back stresses from cyclic tests in one direction.
     """
     from rich.table import Table
 

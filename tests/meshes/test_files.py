@@ -144,13 +144,13 @@ POINTS = [f"{20 * np.cos(a):.6f},{20 * np.sin(a):.6f},{3 * a:.6f},5\n" for a in 
 
 WRONG_TABLES = [
     ("", "line 1: the columns must be x,y,z or x,y,z,wire_diameter, not ''"),
-    ("x;y;z\n", "line 1: the columns must be x,y,z or x,y,z,wire_diameter, not 'x;y;z'"),
-    (HEAD + "1,2,3\n", "line 2: '1,2,3': must be 4 numbers"),
-    (HEAD + "1,2,three,5\n", "line 2: '1,2,three,5': must be 4 numbers"),
+    ("x\n", "line 1: the columns must be x,y,z or x,y,z,wire_diameter, not 'x'"),
+    (HEAD + "1,2,3\n", "line 2, column wire_diameter: '' is not a number"),
+    (HEAD + "1,2,three,5\n", "line 2, column z: 'three' is not a number"),
     (HEAD + "".join(POINTS[:3]), "has 3 points; a centre line needs 5 or more"),
     (
         HEAD + "".join(POINTS) + "1,nan,3,5\n",
-        "point 25: 1, nan, 3, 5: must be finite numbers and a wire diameter above 0",
+        "line 26, column y: 'nan' is not a number",
     ),
     (
         HEAD + "".join(POINTS).replace(",5\n", ",0\n"),
@@ -231,5 +231,5 @@ def test_the_number_of_a_wrong_point_is_that_in_the_file(tmp_path, downwards, st
 
 def test_the_number_of_a_wrong_line_counts_empty_ones(tmp_path):
     (tmp_path / "scan.csv").write_text("\nx,y,z\n\n1,2,3\n1,2,x\n")
-    with pytest.raises(InputError, match="line 5: '1,2,x': must be 3 numbers"):
+    with pytest.raises(InputError, match="line 5, column z: 'x' is not a number"):
         MeasuredSpec(file=str(tmp_path / "scan.csv"), wire_diameter=5.0).build()

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError
-from coilset.model.material.law.columns import read_columns
 
 COLUMNS = ("eps11", "gamma12", "sigma11", "tau12")
 SHEAR = ("gamma12", "tau12")  # a tension test may leave these columns out

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError
-from coilset.model.material.law.columns import read_columns
 
 STRESSES = {"stress": "tension", "shear_stress": "torsion"}  # the column that says what is strained
 NEEDED = ("hours", "temperature", "loss")

@@ -60,6 +60,9 @@ def _check_rate(data: MaterialFile, refuse: Refuse) -> None:
         refuse("rate", "goes with normality only; make non_normality 'none', or leave rate out")
 
 
+ROUNDING = 1e-12  # of G, in the slope of a curve that has saturated
+
+
 def check_functions(data: MaterialFile, functions: Functions, refuse: Refuse) -> None:
     """k² > 0, 2ζ + k²′ ≥ 0 and κ k²′ < 2 over the range of validity: else (3.1.9) is not positive.
 
@@ -77,9 +80,10 @@ def check_functions(data: MaterialFile, functions: Functions, refuse: Refuse) ->
             with np.errstate(all="ignore"):  # what overflows is refused below
                 k2, dk2, zeta, _, kappa, _ = values_at = functions(work, temperature)
                 product, slopes = kappa * dk2, 2 * zeta + dk2
+                falling = slopes < -ROUNDING * at.elasticity.G
             for entry, name, unit, values, broken, rule in (
                 ("isotropic", "k²", " N²/mm⁴", k2, ~(k2 > 0), "must be positive"),
-                ("isotropic", "2ζ + k²′", " N/mm²", slopes, slopes < 0, "must not be negative"),
+                ("isotropic", "2ζ + k²′", " N/mm²", slopes, falling, "must not be negative"),
                 (
                     "non_normality.a",
                     "κ k²′",

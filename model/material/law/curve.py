@@ -15,9 +15,9 @@ import numpy as np
 from annotated_types import Unit
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
+from coilset.model.base.columns import read_columns
 from coilset.model.base.entry import Strict
 from coilset.model.base.errors import InputError
-from coilset.model.material.law.columns import read_columns
 
 NODES = 65  # of a law's curve
 FINE = 32  # intervals of the integral between two nodes

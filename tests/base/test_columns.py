@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError
-from coilset.model.material.law.columns import read_columns
 
 
 def test_comments_a_byte_order_mark_and_line_endings_of_spreadsheets(tmp_path):
@@ -22,11 +22,26 @@ def test_spaces_after_the_commas(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "# wire 7\nstrain;stress\n0,001;205,5\n-0,002;4,11e2\n",
+        "strain\tstress\n0.001\t205.5\n-0.002\t411\n",
+        "\nstrain;stress\n\n0.001;205.5\n-,002;411\n",
+    ],
+)
+def test_semicolons_tabs_and_decimal_commas(text, tmp_path):
+    path = tmp_path / "test.csv"
+    path.write_text(text, encoding="utf-8")
+    table = read_columns(path)
+    np.testing.assert_array_equal(table.numbers("strain"), [0.001, -0.002])
+    np.testing.assert_array_equal(table.numbers("stress"), [205.5, 411.0])
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("# wire 7\nstrain;stress\n0,001;205,5\n", "line 2: the columns are separated by ';'; separate them by commas"),
-        ("strain\tstress\n0.001\t205.5\n", "line 1: the columns are separated by tabs"),
-        ("strain,stress\n0.001,205.5\n0,002,411\n", "line 3: has more cells than the header, which names 2; numbers"),
+        ("strain,stress\n0.001,205.5\n0,002,411\n", "line 3: has 3 cells, but the header names 2 columns; numbers"),
+        ("strain;stress\n0,001;1.205,5\n", "line 2, column stress: '1.205,5' is not a number"),
         ("# wire 7\nstrain,stress\n0.001,\n", "line 3, column stress: '' is not a number"),
         ("strain,stress\n0.001\n", "line 2, column stress: '' is not a number"),
         (b"Dehnung,Spannung \xfcber alles\n", "it is not a text file in UTF-8"),

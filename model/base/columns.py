@@ -1,0 +1,105 @@
+"""Tables in CSV files, as laboratories and spreadsheets write them.
+
+The cells are separated by commas, semicolons or tabs, whichever the first line has. Between semicolons and tabs numbers
+may have a decimal comma.
+"""
+
+import csv
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from coilset.model.base.entry import shortened
+from coilset.model.base.errors import InputError
+
+DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+([eE][-+]?\d+)?\s*")
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The columns of a file.
+
+    Attributes:
+        path: of the file.
+        names: in its header.
+        rows: cells by the names, with the number of their line; a short row lacks the last ones.
+        head: number of the header's line.
+    """
+
+    path: Path
+    names: tuple[str, ...]
+    rows: tuple[tuple[int, dict[str, str]], ...]
+    head: int = 1
+
+    def numbers(self, name: str) -> np.ndarray:
+        """A column, shape (rows,).
+
+        Raises:
+            InputError: if a cell is not a number.
+        """
+        return np.array([self._number(row.get(name), name, line) for line, row in self.rows])
+
+    def lacks(self, name: str, wanted: str) -> InputError:
+        """The error for a column that is not there; `wanted` are those that a user gives, in words."""
+        there = shortened(", ".join(self.names))
+        return InputError(f"is missing; the columns are {wanted}, but here {there}", f"column {name}", self.path)
+
+    def _number(self, text: str | None, name: str, line: int) -> float:
+        value = number(text)
+        if not math.isfinite(value):
+            raise InputError(f"'{shortened(text or '')}' is not a number", f"line {line}, column {name}", self.path)
+        return value
+
+
+def number(text: str | None) -> float:
+    """The number in a cell, also with a decimal comma; NaN if there is none."""
+    text = text or ""
+    try:
+        return float(text.replace(",", ".") if DECIMAL_COMMA.fullmatch(text) else text)
+    except ValueError:
+        return math.nan
+
+
+def read_rows(path: str | Path) -> list[tuple[int, list[str]]]:
+    """The rows of a CSV file that are not empty, with the numbers of their lines; first lines with # are comments.
+
+    Raises:
+        InputError: if it cannot be read.
+    """
+    try:
+        text = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        start = next((k for k, line in enumerate(text) if not line.startswith("#")), len(text))
+        reader = csv.reader(text[start:], delimiter=_separator(text[start:]), strict=True)
+        return [(start + reader.line_num, row) for row in reader if any(map(str.strip, row))]
+    except UnicodeDecodeError:
+        raise InputError("it is not a text file in UTF-8", "", path) from None
+    except (OSError, csv.Error) as error:
+        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "", path) from error
+
+
+def read_columns(path: str | Path) -> Columns:
+    """Read a CSV file with a header; lines above it that begin with # are comments.
+
+    Raises:
+        InputError: if it cannot be read, or a row has more cells than the header.
+    """
+    rows = read_rows(path)
+    head, names = rows[0] if rows else (1, [])
+    names = [name.strip() for name in names]
+    for line, row in rows[1:]:
+        if len(row) > len(names):
+            problem = f"has {len(row)} cells, but the header names {len(names)} columns"
+            hint = "numbers between commas have a decimal point, as in 0.5; those with a decimal comma stand between ;"
+            raise InputError(f"{problem}; {hint}", f"line {line}", path)
+    cells = tuple((line, dict(zip(names, row, strict=False))) for line, row in rows[1:])
+    return Columns(Path(path), tuple(names), cells, head)
+
+
+def _separator(lines: Sequence[str]) -> str:
+    """The one between the cells of the first line that is not empty."""
+    head = next((line for line in lines if line.strip()), "")
+    return next((sign for sign in ";\t" if sign in head), ",")

@@ -1,0 +1,236 @@
+"""Least squares of a wire's constants to presses of springs.
+
+The uniform rod searches; then whole rods of the constants found say what it lacks at each reading (ends that close,
+contacts, the stresses of coiling), and it searches again, until the constants stay. The search ends where the whole
+rod's curves are those that fit.
+"""
+
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy.optimize import OptimizeResult
+
+from coilset.model.base.errors import InputError, SolveError
+from coilset.model.calibration import rods
+from coilset.model.calibration.intervals import Interval, correlation, intervals, minimum
+from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
+from coilset.model.calibration.model import TESTER, Errors, Model, names
+from coilset.model.calibration.pressing import Pressing
+from coilset.model.standards.wires.law import case_law
+from coilset.model.uniform.equivalent import coil
+
+ROUNDS = 8
+SETTLED = 0.2  # squared standard deviations by which the last search may have come nearer
+STARTS = {"yield_stress": (0.3, 0.55, 0.8), "rise": (0.15, 0.6), "rate": (60.0, 300.0, 1200.0)}
+SHARE = 0.2  # to begin with: little flows backwards
+SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides
+CORRELATED = 0.4  # of residuals that follow each other, from which on they are no scatter
+UNLIKE = "the law does not follow the readings"
+TESTED = Errors()
+MISFIT = 1.5  # residuals over the tester's errors, from which on the law does not follow the readings
+
+
+@dataclass(frozen=True)
+class SpringFit:
+    """The result of `fit_springs`.
+
+    Attributes:
+        model: the presses, with what whole rods have more.
+        x: its unknowns.
+        intervals: of each fitted constant, all together with 95 % confidence.
+        correlation: of the fitted constants, shape (fitted, fitted).
+        scatter: rms residual over the tester's errors.
+        following: correlation of residuals that follow each other.
+        rounds: how often whole rods were run.
+    """
+
+    model: Model
+    x: np.ndarray
+    intervals: dict[str, Interval]
+    correlation: np.ndarray
+    scatter: float
+    following: float
+    rounds: int
+
+    @property
+    def values(self) -> dict[str, float]:
+        """All constants and properties of the tester."""
+        return self.model.values(self.x)
+
+    @property
+    def doubtful(self) -> tuple[str, ...]:
+        """Constants that the presses do not determine."""
+        return tuple(name for name, one in self.intervals.items() if one.undetermined)
+
+    @property
+    def sentences(self) -> list[str]:
+        """What it found, as a file's remark says it."""
+        units = self.model.form.units
+        found = [
+            f"{one.name} {one.low:.4g} to {one.high:.4g} {units.get(one.name, '')}".strip()
+            for one in self.intervals.values()
+        ]
+        told = [f"95 % intervals: {', '.join(found)}", f"rms residual {self.scatter:.2g} of the tester's errors"]
+        if self.doubtful:
+            told.append(f"not determined: {', '.join(self.doubtful)}")
+        return told + [self.misfit] * bool(self.misfit)
+
+    def material(self, name: str) -> dict[str, Any]:
+        """Content of a material file; runs the presses once more, for the plastic work that they reached.
+
+        Raises:
+            SolveError: if a whole rod finds no equilibrium.
+        """
+        model, trial = self.model, self.model.form.material(self.values, TRIAL)
+        runs = (rods.steps(one, trial, model.ends(self.x, k)) for k, one in enumerate(model.pressings))
+        work = max(step.plastic_work_max_N_per_mm2 for run in runs for step in run)
+        files = ", ".join(one.name for one in model.pressings)
+        about = {
+            "name": name,
+            "description": f"Constants identified from presses of springs ({model.form.name})",
+            "source": f"coilset material fit --spring: {files}",
+            "validity": {"plastic_work": float(f"{max(work, 1.0):.3g}"), "remark": "; ".join(self.sentences)},
+        }
+        return model.form.material(self.values, about)
+
+    @property
+    def misfit(self) -> str:
+        """Why this law is not that of the readings, in a sentence; empty if nothing says so."""
+        if self.scatter > MISFIT:
+            return f"the residuals are {self.scatter:.2g} times the tester's errors: {UNLIKE}"
+        if self.following > CORRELATED:
+            return f"the residuals follow each other (correlation {self.following:.2g}), they are no scatter: {UNLIKE}"
+        return ""
+
+
+def fit_springs(
+    pressings: Sequence[Pressing],
+    form: str = "voce",
+    known: Mapping[str, float] | None = None,
+    tester: Sequence[str] = (),
+    errors: Errors = TESTED,
+    like: SpringFit | None = None,
+) -> SpringFit:
+    """Identify the constants of a wire from springs that are pressed and released.
+
+    Args:
+        pressings: of springs of this wire, each from its unset state on.
+        form: of the law, voce or thesis.
+        known: constants (`CONSTANTS`) and properties of the tester (`TESTER`) that are given.
+        tester: its properties that are fitted.
+        errors: of the tester.
+        like: a fit of springs that were pressed in the same way, with as many readings, to begin with; its whole rods
+            are used again.
+
+    Raises:
+        InputError: a name that is none, or fewer readings than unknowns.
+        SolveError: if no constants are found with which the springs can be pressed so.
+    """
+    known = dict(known or {})
+    for name in (*known, *tester):
+        if name not in (*CONSTANTS, *TESTER):
+            raise InputError(f"'{name}' is none of {', '.join((*CONSTANTS, *TESTER))}", "--known")
+    law = case_law(pressings[0].case, pressings[0].spring)
+    temperature = pressings[0].case.temperature or law.reference_temperature
+    shape = Form(form, law.nu, temperature)
+    model = Model(tuple(pressings), shape, known, names(shape, known, tester), errors).uncorrected()
+    if model.readings < len(model.fitted):
+        problem = f"{model.readings} readings cannot determine {len(model.fitted)} constants"
+        raise InputError(f"{problem}; give more, or some constants by --known", "--spring")
+    held = [k for k, name in enumerate(model.fitted) if name == "share"]
+    if like is not None:
+        old = like.model
+        model = replace(model, missing=old.missing, slopes_missing=old.slopes_missing, weights=old.weights)
+        model, x, found, rounds = _settle(model, like.x, ())
+    else:
+        model, x, found, rounds = _settle(model, _first(model, law.G, held), held)
+    if held and like is None:
+        model = model.with_shares(x, SHARES)
+        model, x, found, more = _settle(model, x, ())
+        rounds += more
+    J = model.slopes(x)
+    return SpringFit(
+        model,
+        x,
+        intervals(model, x, found, J),
+        correlation(J, len(model.fitted)),
+        _scatter(model, found),
+        _following(model, found),
+        rounds,
+    )
+
+
+def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np.ndarray, OptimizeResult, int]:
+    """Whole rods and search in turn, until the constants stay; with the number of rounds.
+
+    Args:
+        model, x: unknowns to begin with.
+        held: numbers of those that stay: the share until all else is found, then nothing.
+
+    Raises:
+        SolveError: if the constants do not come to rest.
+    """
+    for number in range(1, ROUNDS + 1):
+        if len(model.missing) > 1 and model.share is not None:
+            x = minimum(model, x)[0] if number == 1 else x
+            model = model.with_shares(x, [float(x[model.share])])
+        else:
+            model = model.corrected(x, slopes=number == 2)
+        before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x, held)
+        gained = (before - 2.0 * found.cost) / max(_scatter(model, found), 1.0) ** 2
+        if (number > 2 or not held) and gained < SETTLED:
+            return model, x, found, number
+    raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")
+
+
+def _first(model: Model, G: float, held: Sequence[int]) -> np.ndarray:
+    """Constants by uniform rods alone, from the best of several starts."""
+    starts = []
+    stress = max(_stress(one, G) for one in model.pressings)
+    modulus = model.known.get("G") or _modulus(model, G)
+    for begin, rise, rate in itertools.product(*STARTS.values()):
+        values = {"G": modulus, "yield_stress": begin * stress, "rise": rise * stress, "share": SHARE}
+        values |= {"rate": model.form.rate_at(rate, stress), "friction": 0.0, "compliance": 0.0, "offset": 0.0}
+        starts.append(model.start(values | dict(model.known)))
+    starts.sort(key=lambda x: float(np.sum(model.residual(x) ** 2)))
+    return min((minimum(model, x, held) for x in starts[:2]), key=lambda one: one[1].cost)[0]
+
+
+def _stress(one: Pressing, G: float) -> float:
+    """About the uniaxial stress at the surface under the maximum force; without forces that of an elastic wire, MPa."""
+    d, D, _, turns = coil(one.spring)
+    force = one.force.max() if not one.lengths else 0.6 * G * d**4 / (8.0 * D**3 * turns) * max(filter(None, one.ends))
+    return math.sqrt(3.0) * 8.0 * D * float(force) / (math.pi * d**3)
+
+
+def _modulus(model: Model, G: float) -> float:
+    """G of the steepest third of a first press; that of the case's material where only lengths are known."""
+    found = [G]
+    for one in model.pressings:
+        if not one.lengths:
+            d, D, _, turns = coil(one.spring)
+            here = (one.branch == 0) & (one.travel < 0.4 * one.travel.max())
+            if here.sum() > 2:
+                found.append(float(np.polyfit(one.travel[here], one.force[here], 1)[0]) * 8.0 * D**3 * turns / d**4)
+    return found[-1]
+
+
+def _scatter(model: Model, found: OptimizeResult) -> float:
+    """Rms residual over the tester's errors, with the unknowns taken off."""
+    return math.sqrt(2.0 * found.cost / max(model.readings - len(model.fitted), 1))
+
+
+def _following(model: Model, found: OptimizeResult) -> float:
+    """Correlation of neighbouring residuals, over all pressings."""
+    r, start, pairs = found.fun, 0, []
+    for weight in model.weights:
+        end = start + int(np.isfinite(weight).sum())
+        pairs.append((r[start : end - 1], r[start + 1 : end]))
+        start = end
+    a, b = (np.concatenate(part) for part in zip(*pairs, strict=True))
+    square = float(np.sum(r[:start] ** 2))
+    return float(np.sum(a * b)) / square if square > 0.0 and len(a) > 3 else 0.0

@@ -1,0 +1,20 @@
+"""The cylindrical coil that stands for a spring of another shape."""
+
+import numpy as np
+
+from coilset.meshes.springs.geometry import Spring
+
+
+def coil(spring: Spring) -> np.ndarray:
+    """Wire diameter, mean diameter, pitch (mm) and turns of the equivalent cylinder, shape (4,).
+
+    Its turns are the active ones, its compliance ∝ ∫ D³/d⁴ dt that of the spring.
+    """
+    start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
+    t = np.linspace(start, end, 257)
+    middle = 0.5 * (t[1:] + t[:-1])
+    d = spring.wire_diameter(middle)
+    mean = float(d.mean())
+    D = float(np.mean((2.0 * spring.mean_radius(middle)) ** 3 / d**4) * mean**4) ** (1.0 / 3.0)
+    pitch = float(spring.height(end) - spring.height(start)) / (end - start)
+    return np.array([mean, D, pitch, end - start])

@@ -1,0 +1,112 @@
+"""`coilset material fit --spring`: constants of a wire from springs that were pressed and released."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+from click import Command, Context
+from typer.core import TyperGroup
+
+from coilset.model.base.errors import InputError
+from coilset.scripts.compiling import announce_compiling
+from coilset.scripts.terminal.target import OVERWRITE, folder_target
+
+if TYPE_CHECKING:
+    from coilset.model.calibration.pressing import Pressing
+
+FLAG, NAME = "--spring", "fit-springs"
+DATA = typer.Argument(
+    help="tester's files (CSV: travel, force; or height, force; or height, free_length), and after them the case file "
+    "(YAML) of their spring; several springs one after the other"
+)
+KNOWN = typer.Option([], metavar="NAME=VALUE", help="a constant or a property of the tester that is given")
+UNKNOWN = typer.Option([], metavar="NAME", help="fit friction, compliance or offset of the tester, too")
+
+
+class MaterialGroup(TyperGroup):
+    """The commands of `coilset material`; `fit --spring` is `fit-springs`."""
+
+    def resolve_command(self, ctx: Context, args: list[str]) -> tuple[str | None, Command | None, list[str]]:
+        """See click."""
+        if args[:1] == ["fit"] and FLAG in args:
+            args = [NAME, *(arg for arg in args[1:] if arg != FLAG)]
+        return super().resolve_command(ctx, args)
+
+
+def fit_springs(
+    data: list[str] = DATA,
+    law: str = typer.Option("voce", help="voce, or thesis: how hardening saturates"),
+    known: list[str] = KNOWN,
+    tester: list[str] = UNKNOWN,
+    force_error: float = typer.Option(0.005, min=1e-6, max=0.5, help="relative error of the tester's force"),
+    travel_error: float = typer.Option(0.02, min=1e-6, help="error of its travel, or of a measured length, mm"),
+    name: str = typer.Option("fitted", help="name of the material"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/material/NAME]"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
+) -> None:
+    """Identify yield, hardening and G of a wire from springs that are pressed and released; also `fit --spring`."""
+    from rich.table import Table
+
+    from coilset.model.calibration.figure import figure
+    from coilset.model.calibration.fit import fit_springs as fit
+    from coilset.model.calibration.model import TESTER, Errors
+    from coilset.model.calibration.next_press import next_press, words
+    from coilset.scripts.commands.material import _folder, _free, _save, _write_material
+    from coilset.scripts.terminal.console import Console
+
+    announce_compiling()
+    file, picture = _free(_folder(out, name), force, f"{name}.yaml", "fit.png")
+    pressings = _read(data)
+    console = Console()
+    found = fit(pressings, law, _known(known), tester, Errors(force_error, travel_error))
+    units = found.model.form.units | TESTER
+    table = Table("constant", "value", "from", "to", "unit", "", box=None, padding=(0, 2))
+    for one in found.intervals.values():
+        mark = "not determined" if one.undetermined else ""
+        table.add_row(one.name, f"{one.value:.5g}", f"{one.low:.4g}", f"{one.high:.4g}", units[one.name], mark)
+    console.print(table)
+    console.print("from, to: all constants lie within with 95 % confidence")
+    names, matrix = found.model.fitted, found.correlation
+    rows = Table("correlation", *names, box=None, padding=(0, 2))
+    for constant, row in zip(names, matrix, strict=True):
+        rows.add_row(constant, *("-" if value != value else f"{value:.2f}" for value in row))
+    console.print(rows)
+    console.print(f"rms residual {found.scatter:.3g} of the tester's errors, {found.model.readings} readings")
+    if found.misfit:
+        console.warn(found.misfit)
+    for sentence in words(next_press(found), found.doubtful):
+        console.print(sentence, soft_wrap=True)
+    _write_material(file, found.material(name), console)
+    _save(figure(found), picture, console)
+
+
+def _known(texts: list[str]) -> dict[str, float]:
+    from coilset.model.base.columns import number
+
+    found = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        found[name] = number(value)
+        if found[name] != found[name]:
+            raise InputError("give it as NAME=VALUE, as in G=79500", f"--known {text}")
+    return found
+
+
+def _read(paths: list[str]) -> "list[Pressing]":
+    """The presses of the files, each with the case that follows it."""
+    from coilset.model.calibration.pressing import read_pressing
+    from coilset.model.case import read_case
+
+    found, waiting = [], []
+    for path in paths:
+        if Path(path).suffix.lower() not in (".yaml", ".yml"):
+            waiting.append(path)
+            continue
+        if not waiting:
+            raise InputError("no tester's file stands before it; give press.csv spring.yaml", FLAG, path)
+        case = read_case(path)
+        found += [read_pressing(one, case) for one in waiting]
+        waiting = []
+    if waiting:
+        raise InputError("no case file of its spring follows; give press.csv spring.yaml", FLAG, waiting[0])
+    return found
