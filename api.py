@@ -43,6 +43,7 @@ from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.material.programs import Program
 from coilset.model.material.programs import run as run_program
+from coilset.model.results.characteristic import place_at
 from coilset.model.results.files.folder import make, refuse_results, write_summary
 from coilset.model.results.files.labelled import labelled
 from coilset.model.results.records.provenance import origin
@@ -228,7 +229,7 @@ class Result:
         return self.data["force_N"].to_numpy()
 
     def force_at(self, travel: float, phase: int | None = None) -> float:
-        """Axial force at a travel, N, interpolated between the steps.
+        """Axial force at a travel, N, by a monotone cubic through the steps.
 
         Args:
             travel: shortening of the unloaded spring as wound, mm.
@@ -241,19 +242,31 @@ class Result:
         >>> print(f"{result.force_at(10):.0f} N when pressed, {result.force_at(15, phase=1):.0f} N on release")
         178 N when pressed, 71 N on release
         """
-        of_step = self.data["phase"].to_numpy()
-        travels, forces = np.append(0.0, self.travel), np.append(0.0, self.force)
-        numbers = np.unique(of_step) if phase is None else [phase]
-        for number in numbers:
-            rows = np.flatnonzero(of_step == number) + 1  # the row before is the end of the phase before
-            if not len(rows):
-                break
-            x, y = (values[rows[0] - 1 : rows[-1] + 1] for values in (travels, forces))
-            if x.min() <= travel <= x.max():
-                order = np.argsort(x)
-                return float(np.interp(travel, x[order], y[order]))
-        where = "in no phase" if phase is None else f"not in phase {phase}"
-        raise InputError(f"{travel:g} mm is reached {where} of the load program", "travel")
+        return place_at(self.data, travel, phase).force
+
+    def rate_at(self, travel: float, phase: int | None = None) -> float:
+        """Slope of the characteristic at a travel, N/mm; arguments as of `force_at`.
+
+        Raises:
+            InputError: the spring does not reach the travel in that phase.
+
+        >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
+        >>> f"{result.rate_at(1):.0f} N/mm" == f"{result.summary['rate_N_per_mm']:.0f} N/mm"
+        True
+        """
+        return place_at(self.data, travel, phase).rate
+
+    def force_error_at(self, travel: float, phase: int | None = None) -> float:
+        """Estimated size of the error of `force_at`, N; not a number where it is not known.
+
+        Raises:
+            InputError: the spring does not reach the travel in that phase.
+
+        >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
+        >>> result.force_error_at(10) < 0.02 * result.force_at(10)
+        True
+        """
+        return place_at(self.data, travel, phase).error
 
 
 def solve(

@@ -51,8 +51,6 @@ PARAMETERS = {
     "model/material/point/back_stresses.py": 1,
     "model/material/point/rod_plastic.py": 1,
     "model/rod/forms.py": 1,
-    "model/rod/kinematics.py": 2,
-    "model/rod/prediction.py": 1,
     "model/section/condensation.py": 1,
     "model/section/fibres.py": 2,
     "model/section/integration.py": 1,
