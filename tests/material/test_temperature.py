@@ -142,7 +142,7 @@ def test_heating_matters(material_file):
 
 @pytest.mark.parametrize("name", [*ROD_PATHS, "full stress state"])
 def test_prescribed_temperature(name, material_file, reference_of):
-    """Strain and temperature together, through a knee of the table and down again: of second order or better, but for the knee."""
+    """Strain and temperature together, through a knee of the table and back: at least of second order."""
     law = library.load(material_file(), spin=False)
     path, rod = (ROD_PATHS[name], True) if name in ROD_PATHS else (SOLID_PATH, False)
     warming = [250.0, -150.0, 60.0][: len(path)]
