@@ -320,8 +320,6 @@ def test_both_ways_through_a_rods_point(entries, yielding):
             middle = creeping.clock(1.0, COLD + 20, before)
             over = creeping.over(middle, creeping.clock(1.0 + hours, COLD + 60, middle))
             de, found = 0.3 * size * _unit(rng, 3), []
-            if hours == 1e8 and size == 3e-3:
-                continue  # the general way divides this increment
             for way in (lambda *a: creep_rod.rod_map(a[0], a[1], *a[2], *a[3:]), increment.advance):
                 new, C = np.full_like(state, np.nan), np.empty((3, 3))
                 assert way(over, state, de, new, C) >= 0
@@ -331,7 +329,7 @@ def test_both_ways_through_a_rods_point(entries, yielding):
             np.testing.assert_allclose(new[3:], other[3:], rtol=1e-7, atol=1e-14)
             np.testing.assert_allclose(C, D, atol=1e-6 * law.E)
             n += creep_rod._without_yield(over, state, (de[0], de[1], de[2]), new, C) >= 0
-    assert n == 19 if not yielding else 5 <= n < 19
+    assert n >= 19 if not yielding else 5 <= n < 19
 
 
 def test_creep_belongs():

@@ -238,7 +238,7 @@ def creep_alone(law: Parts, span: Span, start: np.ndarray, room: Room) -> tuple[
             return 0.0, -1
         falls = (first_c * chi * a * sa + c * chi * b * sb) / (sa + sb)  # −d log σ/d log χ
         step = math.log(1.5 * of.strain / (chi * sigma)) / (1.0 + (of.by_stress * sigma / of.strain - 1.0) * falls)
-        if abs(step) * of.strain <= 1e-11 * (strain + of.strain) + 1e-16:
+        if abs(step) * chi * sigma <= 1e-11 * (strain + of.strain) + 1e-16:
             return chi * (1.0 + step), iteration
         chi *= math.exp(step)
     return 0.0, -1
