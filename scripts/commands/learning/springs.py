@@ -3,12 +3,12 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
 from click import Command, Context
 from typer.core import TyperGroup
 
 from coilset.model.base.errors import InputError
 from coilset.scripts.compiling import announce_compiling
+from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target
 
 if TYPE_CHECKING:
