@@ -157,8 +157,8 @@ def test_an_equilibrium_found_again_after_the_heat_is_no_step_of_the_path(files)
 
     analysis.newton.solve, following = keep, []
     steps = analysis.run(lambda _: following.append(analysis.continuation.guess.scaled_last(1.0).getArray())).steps
-    assert [step.estimated_force_error_N for step in steps[1:]] == pytest.approx(
-        [step.estimated_force_error_N for step in alone[1:]], rel=0.02
+    assert [step.steps_force_error_N for step in steps[1:]] == pytest.approx(
+        [step.steps_force_error_N for step in alone[1:]], rel=0.02
     )
     of_steps = outcomes[1:]  # after the initial rate
     assert len(of_steps) == 2 * len(steps)
