@@ -56,7 +56,7 @@ def said(script):
 
 
 def test_the_commands_are_listed_without_rich():
-    """It takes longer to load than everything else that `--help` needs; a command that imports typer itself loads it."""
+    """It takes longer to load than everything else for `--help`; a command that imports typer itself loads it."""
     script = "import sys, coilset.scripts.main; print('rich' in sys.modules, 'numba' in sys.modules)"
     assert said(script) == ["False", "False"]
 
