@@ -14,9 +14,9 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.base.warning import Warning
 from coilset.model.manufacture.coiling import coil, grind
 from coilset.model.manufacture.peening import Layer, peen, peening_warnings
-from coilset.model.material.creep.creep import Creeping
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.law.functions import HEATING, elasticity
+from coilset.model.material.law.parts import Parts
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.kinds import Sections
@@ -36,7 +36,7 @@ class _Past:
 
     law: SectionLaw
     coiled: bool
-    relief: tuple[Creeping, ...]
+    relief: tuple[Parts, ...]
     layer: Layer | None
 
 
@@ -98,7 +98,7 @@ def _past(rod: Rod, spring: SpringSpec) -> _Past:
     state = {name: rod.state[name].equilibrium for name in START}
     law = rod.sections.law_over_time.over(state, state)
     return _Past(
-        _cold(law) if isinstance(law, np.ndarray) else law,
+        law._replace(plastic=_cold(law.plastic)) if isinstance(law, Parts) else _cold(law),
         bool(spring.made_by),
         _relief(rod, spring.relieved),
         None if spring.peening is None else _layer(rod, spring.peening),
@@ -129,7 +129,7 @@ def _layer(rod: Rod, peening: Peening) -> Layer:
     return Layer(np.array(peening.depth), -np.array(peening.stress) / E)
 
 
-def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
+def _relief(rod: Rod, relief: Relief | None) -> tuple[Parts, ...]:
     """The law over the intervals of a stress relief; heating and cooling take no time."""
     if relief is None:
         return ()
@@ -143,7 +143,7 @@ def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
     except InputError as error:
         raise InputError(error.problem, "spring.relieved.temperature") from None
     hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, INTERVALS + 1) * np.log1p(1.0 / FIRST))
-    creep = CreepLaw(rod.law.creep, _cold(rod.parameters))
+    creep = CreepLaw(rod.law.creep, rod.law.parts(_cold(rod.parameters)), rate=rod.law.data.rate)
     clocks = [creep.clock(0.0, rod.temperature)]
     for time, temperature in (*((float(time), warm) for time in hours), (float(hours[-1]), rod.temperature)):
         clocks.append(creep.clock(time, temperature, clocks[-1]))
