@@ -30,7 +30,7 @@ def draw(data: xr.Dataset, path: str | Path, turn: float, spot: float = 1.0, dep
         axes = figure.add_subplot()
         for k, direction in enumerate(("+45°", "-45°", "along")):
             seen, point = ([float(row[name].sel(direction=direction)) for row in rows] for name in ("stress", "point"))
-            axes.plot(ANGLES, seen, "-", color=f"C{k}", lw=1.4, label=f"{direction}, as seen")
+            axes.plot(ANGLES, seen, "-", color=f"C{k}", lw=1.4, label=f"{direction.replace('-', '−')}, as seen")
             axes.plot(ANGLES, point, "o", ms=3, mfc="none", color=f"C{k}", label="at the point")
         axes.axhline(0.0, color="k", lw=0.6)
         axes.set(
@@ -39,5 +39,5 @@ def draw(data: xr.Dataset, path: str | Path, turn: float, spot: float = 1.0, dep
             xticks=np.arange(-180, 181, 60),
             title=f"turn {turn:g}, spot {spot:g} mm, depth {depth:g} µm",
         )
-        axes.legend(fontsize=8, ncols=3)
+        figure.legend(fontsize=8, ncols=3, loc="outside lower center")
         save(figure, Path(path))
