@@ -43,6 +43,7 @@ from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.material.programs import Program
 from coilset.model.material.programs import run as run_program
+from coilset.model.results.characteristic import place_at
 from coilset.model.results.files.folder import make, refuse_results, write_summary
 from coilset.model.results.files.labelled import labelled
 from coilset.model.results.records.provenance import origin
@@ -52,6 +53,7 @@ from coilset.model.results.run_files import write_run
 from coilset.model.run.analysis import Analysis
 from coilset.model.runtime.processes import usable_cores
 from coilset.model.runtime.threads import usual
+from coilset.model.sweep.study import Study as _Study
 
 __all__ = [
     "Case",
@@ -62,6 +64,7 @@ __all__ = [
     "Result",
     "SolveError",
     "Step",
+    "Study",
     "design",
     "material",
     "slice_",
@@ -226,7 +229,7 @@ class Result:
         return self.data["force_N"].to_numpy()
 
     def force_at(self, travel: float, phase: int | None = None) -> float:
-        """Axial force at a travel, N, interpolated between the steps.
+        """Axial force at a travel, N, by a monotone cubic through the steps.
 
         Args:
             travel: shortening of the unloaded spring as wound, mm.
@@ -239,19 +242,31 @@ class Result:
         >>> print(f"{result.force_at(10):.0f} N when pressed, {result.force_at(15, phase=1):.0f} N on release")
         178 N when pressed, 71 N on release
         """
-        of_step = self.data["phase"].to_numpy()
-        travels, forces = np.append(0.0, self.travel), np.append(0.0, self.force)
-        numbers = np.unique(of_step) if phase is None else [phase]
-        for number in numbers:
-            rows = np.flatnonzero(of_step == number) + 1  # the row before is the end of the phase before
-            if not len(rows):
-                break
-            x, y = (values[rows[0] - 1 : rows[-1] + 1] for values in (travels, forces))
-            if x.min() <= travel <= x.max():
-                order = np.argsort(x)
-                return float(np.interp(travel, x[order], y[order]))
-        where = "in no phase" if phase is None else f"not in phase {phase}"
-        raise InputError(f"{travel:g} mm is reached {where} of the load program", "travel")
+        return place_at(self.data, travel, phase).force
+
+    def rate_at(self, travel: float, phase: int | None = None) -> float:
+        """Slope of the characteristic at a travel, N/mm; arguments as of `force_at`.
+
+        Raises:
+            InputError: the spring does not reach the travel in that phase.
+
+        >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
+        >>> f"{result.rate_at(1):.0f} N/mm" == f"{result.summary['rate_N_per_mm']:.0f} N/mm"
+        True
+        """
+        return place_at(self.data, travel, phase).rate
+
+    def force_error_at(self, travel: float, phase: int | None = None) -> float:
+        """Estimated size of the error of `force_at`, N; not a number where it is not known.
+
+        Raises:
+            InputError: the spring does not reach the travel in that phase.
+
+        >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
+        >>> result.force_error_at(10) < 0.02 * result.force_at(10)
+        True
+        """
+        return place_at(self.data, travel, phase).error
 
 
 def solve(
@@ -354,9 +369,9 @@ def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwri
     True
     """
     from coilset.model.sweep import dataset
+    from coilset.model.sweep.engines.processes import Workers
     from coilset.model.sweep.journal import Journal
     from coilset.model.sweep.plan import Plan
-    from coilset.model.sweep.pools import Workers
     from coilset.model.sweep.run import finished, missing, run
 
     checked, folder = Plan(plan), Path(folder)
@@ -369,10 +384,27 @@ def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwri
         workers.pool(folder / "workers.log") as pool,
         closing(Journal(path)) as journal,
     ):
-        run(checked, missing(checked, finished(path, retry=False)), pool, journal)
-    data = dataset.collect(checked, path)
+        run(checked, missing(checked, finished(folder, retry=False)), pool, journal)
+    data = dataset.collect(checked, folder)
     dataset.write(folder / "sweep.nc", data)
     return data
+
+
+class Study(_Study):
+    """A sweep whose cases another program chooses or computes: ask for cases, tell their results.
+
+    Results are kept in a journal as `sweep` keeps them, so that an interrupted study goes on. `ask` gives cases of the
+    plan, or those with given inputs; `evaluate` computes them in processes of this machine; `tell` keeps results from
+    elsewhere; `results` is the data set of all. Release the folder by `close`.
+
+    >>> import tempfile
+    >>> study = Study("examples/sweeps/preset_height.yaml", tempfile.mkdtemp())
+    >>> trial = study.ask()[0]
+    >>> study.tell(trial.key, {"set_mm": 12.5})
+    >>> float(study.results()["set_mm"][0])
+    12.5
+    >>> study.close()
+    """
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ import coilset.open
 run = coilset.open("results/ck15_presetting")
 run["force_N"]                                        # a column of history.csv, over the steps
 run["surface"].sel(component="t13", snapshot="block")
+run.force_at(5.0), run.rate_at(5.0), run.force_error_at(5.0)
 run.xray(turn=3.5, angle=0, spot=1.0, depth=0)        # residual stress as a diffractometer sees it
 """
 
@@ -15,6 +16,7 @@ from types import ModuleType
 import xarray as xr
 
 from coilset.model.design.opened import FILE, open_design
+from coilset.model.results.characteristic import Run
 from coilset.model.results.diffraction import register
 from coilset.model.results.files.labelled import labelled
 
@@ -25,8 +27,11 @@ class _Open(ModuleType):
     """This module, which can be called."""
 
     def __call__(self, folder: str | Path) -> xr.Dataset:
-        """Results of a run, a slice, a sweep or a design, as labelled data."""
-        return open_design(folder) if Path(folder, FILE).is_file() else labelled(folder)
+        """Results of a run, a slice, a sweep or a design, as labelled data; of a run with `force_at` and `rate_at`."""
+        if Path(folder, FILE).is_file():
+            return open_design(folder)
+        data = labelled(folder)
+        return Run(data.data_vars, data.coords, data.attrs) if "travel_mm" in data and "phase" in data else data
 
 
 sys.modules[__name__].__class__ = _Open

@@ -24,6 +24,8 @@ fail() { say "$*"; exit 2; }
 hear_interrupts() { trap 'exit 130' INT; }
 
 packages() { tr '\n' ' ' < "$scripts/packages.txt"; }
+# They bring no dependencies: what they need is among the packages, which pip would replace.
+wheels() { printf 'python3 -m pip install --break-system-packages --no-deps %s' "$(tr '\n' ' ' < "$scripts/wheels.txt")"; }
 
 # What was found is kept beside the checkout's link in the cache folder, one record for each python3 of the PATH: the
 # kind, the Python, and facts: files and folders that must be there and not be newer than the record.
@@ -65,7 +67,7 @@ recall() { # the record, if its facts still hold
 }
 
 remember() {
-    facts+=("$scripts/environment.sh" "$scripts/environment.py" "$scripts/packages.txt")
+    facts+=("$scripts/environment.sh" "$scripts/environment.py" "$scripts/packages.txt" "$scripts/wheels.txt")
     [ "$kind" = directly ] || facts+=("$private_root$record")
     printf '%s\n' "$kind" "$python" "${facts[@]}" > "$found.$$" && mv "$found.$$" "$found"
 }
@@ -129,6 +131,8 @@ install_here() {
     quietly apt-get update
     # shellcheck disable=SC2046
     quietly apt-get install -y --no-install-recommends $(packages)
+    # shellcheck disable=SC2046
+    (quietly $(wheels)) || say "PyPI was not reached: sweeps write no Parquet file"
 }
 
 progress() { # of an installation, in per cent by its log: each package is unpacked and set up; nothing before that

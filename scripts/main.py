@@ -2,6 +2,7 @@
 
 import os
 import sys
+from enum import StrEnum
 from pathlib import Path
 
 from coilset.model.base.errors import InputError
@@ -26,6 +27,16 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.add_typer(material, name="material")
+
+
+class Engine(StrEnum):
+    """Where the cases of a sweep run."""
+
+    processes = "processes"
+    mpi = "mpi"
+    dask = "dask"
+
+
 THREADS = typer.Option(
     None, min=1, envvar="COILSET_THREADS", help="threads [default: as many as cores, on several ranks one for each]"
 )
@@ -230,19 +241,48 @@ def sweep(
     force: bool = typer.Option(False, *OVERWRITE, help="discard existing cases"),
     resume: bool = typer.Option(False, "--resume", help="run only the missing cases"),
     retry: bool = typer.Option(False, "--retry", help="like --resume, but also rerun failed cases"),
+    collect: bool = typer.Option(False, "--collect", help="run nothing; join the journals of all shards"),
+    shard: str = typer.Option(
+        None, metavar="K/N", help="run only every N-th case, from the K-th, into a journal of its own"
+    ),
+    until: str = typer.Option(
+        None, metavar="H:MM:SS", help="start no case that would end later than this after the start"
+    ),
+    budget: str = typer.Option(None, metavar="H:MM:SS", help="start no case once all have taken this time together"),
+    engine: Engine = typer.Option(None, help="where cases run [default: processes, under mpirun its ranks]"),
+    scheduler: str = typer.Option(None, metavar="ADDRESS", help="of a running Dask cluster, such as tcp://host:8786"),
     jobs: int = typer.Option(None, min=1, help="processes on this machine [default: one per core]"),
     ranks_per_case: int = typer.Option(1, min=1, help="under mpirun: number of ranks that share a case"),
     pictures: bool = typer.Option(True, help="draw the figures"),
 ) -> None:
     """Solve many variants of a case."""
-    from coilset.model.sweep.pools import Workers
+    from coilset.model.sweep.engines.processes import Workers
+    from coilset.model.sweep.shards import Shard, duration
 
+    share = Shard.parse(shard)
+    limits = duration(until, "--until"), duration(budget, "--budget")
+    _check_engine(engine, scheduler)
     announce_begin(sweep_file, out)
     compile_first(lambda: _check_sweep(sweep_file))
-    with Workers((jobs or usable_cores()) if number_of_ranks() == 1 else 0, dict(os.environ)) as workers:
+    jobs, own = jobs or usable_cores(), number_of_ranks() == 1 and engine != Engine.dask and not collect
+    with Workers(jobs if own else 0, dict(os.environ)) as workers:
+        from coilset.scripts.commands.sweep import Options
         from coilset.scripts.commands.sweep import sweep as run_sweep
 
-        run_sweep(sweep_file, out, force, resume, retry, workers, ranks_per_case, pictures)
+        kept = force, resume, retry, collect
+        name = engine.value if engine else None
+        options = Options(*kept, share, *limits, name, scheduler, jobs, ranks_per_case, pictures)
+        run_sweep(sweep_file, out, workers, options)
+
+
+def _check_engine(engine: Engine | None, scheduler: str | None) -> None:
+    ranks = number_of_ranks()
+    if engine == Engine.mpi and ranks == 1:
+        raise InputError("mpi needs ranks; start them by scripts/coilset -n 3 sweep ... or mpirun", "--engine")
+    if ranks > 1 and engine in (Engine.dask, Engine.processes):
+        raise InputError(f"is {engine.value}, but {ranks} ranks are running; leave one of both out", "--engine")
+    if scheduler is not None and engine != Engine.dask:
+        raise InputError("goes with --engine dask", "--scheduler")
 
 
 def _check_sweep(sweep_file: str) -> None:
@@ -312,6 +352,9 @@ def bench(
     springs: bool = typer.Option(False, "--springs", help="run random springs instead; their costs by family"),
     count: int = typer.Option(70, min=1, max=100_000, help="number of random springs"),
     against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands or springs of another checkout"),
+    million: float = typer.Option(
+        None, min=1e-4, max=1.0, metavar="FRACTION", help="only a sweep of this part of a million cases, killed thrice"
+    ),
 ) -> None:
     """Measure run time of commands, by stage, by number of elements and on two ranks."""
     compile_first()
@@ -319,6 +362,8 @@ def bench(
 
     if springs:
         benchmarks.bench_springs(out, count, against)
+    elif million is not None:
+        benchmarks.bench_million(out, million)
     else:
         benchmarks.bench(out, full, cold, against)
 

@@ -10,7 +10,7 @@ record=/etc/coilset-packages # in the private root: what was installed there
 may_be_old='Acquire::Check-Valid-Until "false"'
 
 private_root_complete() { # has the private root every package? It may have more: checkouts of all ages share it
-    [ -f "$private_root$record" ] && ! grep -qvxFf "$private_root$record" "$scripts/packages.txt"
+    [ -f "$private_root$record" ] && ! sort -u "$scripts/packages.txt" "$scripts/wheels.txt" | grep -qvxFf "$private_root$record"
 }
 
 make_private_root() {
@@ -37,7 +37,8 @@ make_it_anew() {
     say "$private_root (once, some minutes, 3.5 GB; delete the folder to be rid of it) ..."
     discard "$partial"
     quietly mmdebstrap --verbose --variant=minbase --aptopt="$may_be_old" --include="$(packages | tr ' ' ',')" "$release" "$partial"
-    cp "$scripts/packages.txt" "$partial$record"
+    add_wheels "$partial"
+    sort -u "$scripts/packages.txt" "$scripts/wheels.txt" -o "$partial$record"
     rm -rf "$private_root"
     mv "$partial" "$private_root"
     say "the environment is ready"
@@ -55,17 +56,24 @@ discard() { # a folder in which one that was killed may have left file systems o
 add_packages() { # to a private root that is there: a minute at most, where a new one takes several
     say "adding packages to $private_root (once, less than a minute) ..."
     (quietly add_all) || { say "making it anew instead"; return 1; }
-    sort -u "$scripts/packages.txt" "$private_root$record" -o "$private_root$record"
+    add_wheels "$private_root"
+    sort -u "$scripts/packages.txt" "$scripts/wheels.txt" "$private_root$record" -o "$private_root$record"
 }
 
 add_all() {
-    in_root() {
-        bwrap --bind "$private_root" / --ro-bind /etc/resolv.conf /etc/resolv.conf --dev /dev --proc /proc \
-            --setenv PATH /usr/sbin:/usr/bin:/sbin:/bin --setenv DEBIAN_FRONTEND noninteractive -- "$@"
-    }
     # shellcheck disable=SC2046
-    in_root dpkg --configure -a && in_root apt-get update &&
-        in_root apt-get install -y --no-install-recommends $(packages) && in_root apt-get clean
+    in_root "$private_root" dpkg --configure -a && in_root "$private_root" apt-get update &&
+        in_root "$private_root" apt-get install -y --no-install-recommends $(packages) && in_root "$private_root" apt-get clean
+}
+
+in_root() { # as root in a folder; certificates are this machine's
+    bwrap --bind "$1" / --ro-bind /etc/resolv.conf /etc/resolv.conf --ro-bind-try /etc/ssl /etc/ssl --dev /dev --proc /proc \
+        --setenv PATH /usr/sbin:/usr/bin:/sbin:/bin --setenv HOME /root --setenv DEBIAN_FRONTEND noninteractive -- "${@:2}"
+}
+
+add_wheels() { # what Debian does not have, from PyPI; coilset runs without it, and says what is missing when it is needed
+    # shellcheck disable=SC2046
+    (quietly in_root "$1" $(wheels)) || say "PyPI was not reached: sweeps write no Parquet file"
 }
 
 # The private root brings its own system folders; every other folder of this machine is seen through. This shell stays

@@ -51,8 +51,6 @@ PARAMETERS = {
     "model/material/point/back_stresses.py": 1,
     "model/material/point/rod_plastic.py": 1,
     "model/rod/forms.py": 1,
-    "model/rod/kinematics.py": 2,
-    "model/rod/prediction.py": 1,
     "model/section/condensation.py": 1,
     "model/section/fibres.py": 2,
     "model/section/integration.py": 1,
@@ -60,7 +58,6 @@ PARAMETERS = {
     "model/uniform/rod.py": 1,
     "scripts/commands/sheet.py": 1,
     "scripts/commands/solve.py": 1,
-    "scripts/main.py": 2,  # options of commands
 }
 CTYPES = {"model/equilibrium/aij.py", "model/results/files/two_files.py", "model/runtime/processes.py"}
 
@@ -81,13 +78,18 @@ def test_a_folder_has_at_most_fourteen_files():
     assert {folder: size for folder, size in sizes.items() if size > FOLDERS.get(folder, MOST_FILES)} == {}
 
 
+def is_command(function):
+    """`@app.command()`: its parameters are the options of a command, which nobody passes by position."""
+    return any("command" in ast.dump(decorator) for decorator in function.decorator_list)
+
+
 def test_a_function_has_at_most_ten_parameters():
     many = {}
     for file, tree in sources():
         for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
             of = function.args
             names = [one.arg for one in (*of.posonlyargs, *of.args, *of.kwonlyargs) if one.arg not in ("self", "cls")]
-            if len(names) > MOST_PARAMETERS:
+            if len(names) > MOST_PARAMETERS and not is_command(function):
                 many[file.as_posix()] = many.get(file.as_posix(), 0) + 1
     assert {file: count for file, count in many.items() if count > PARAMETERS.get(file, 0)} == {}
 

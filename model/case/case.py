@@ -21,6 +21,9 @@ from coilset.model.case.settings import assign, located
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
+ANGLES, ANGLES_COILED = 20, 32
+"""Angles of the polar rule where the case gives none."""
+
 
 class SectionSpec(Strict):
     """The wire's cross-section: its kinematics and its quadrature."""
@@ -43,7 +46,10 @@ class SectionSpec(Strict):
         "polar"
     )
     radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 8
-    angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 20
+    angular: Annotated[
+        Whole | None,
+        Field(ge=3, le=256, description="angles of the polar rule; left out: 20, or 32 in wire made by coiling"),
+    ] = None
     staggered: Annotated[
         bool,
         Field(description="whether every second ring of the polar rule is offset by half the angle between its points"),
@@ -57,7 +63,7 @@ class SectionSpec(Strict):
 
     @model_validator(mode="after")
     def _warping_is_integrated(self) -> Self:
-        exact = 5 if self.rule == "abramowitz9" else min(4 * self.radial, self.angular) - 1
+        exact = 5 if self.rule == "abramowitz9" else min(4 * self.radial, self.angular or ANGLES) - 1
         needed = 2 * self.degree - 2
         if self.kind == "warping" and exact < needed:
             raise ValueError(
@@ -66,16 +72,15 @@ class SectionSpec(Strict):
             )
         return self
 
-    @property
-    def points(self) -> int:
-        """Number of points in a rod's two sections."""
-        return 2 * (9 if self.rule == "abramowitz9" else self.radial * self.angular)
+    def build(self, coiled: bool = False) -> rules.DiskRule:
+        """The quadrature rule, of wire that was coiled or not.
 
-    def build(self) -> rules.DiskRule:
-        """The quadrature rule."""
+        Coiling leaves kinks along straight lines across the section, the edges of its elastic core, which more angles
+        resolve (docs/rod.md).
+        """
         if self.rule == "abramowitz9":
             return rules.abramowitz9()
-        return rules.polar(self.radial, self.angular, self.staggered)
+        return rules.polar(self.radial, self.angular or (ANGLES_COILED if coiled else ANGLES), self.staggered)
 
 
 class MeshSpec(Strict):
@@ -348,6 +353,11 @@ class Case(Strict):
     def ends_turn(self) -> bool:
         """Whether an end of the spring is free to turn about its axis; held tips are not."""
         return self.ends == "seats" and "free" in (self.seats.bottom.turn, self.seats.top.turn)
+
+    @property
+    def section_rule(self) -> rules.DiskRule:
+        """The quadrature rule of the wire's section."""
+        return self.mesh.section.build("made_by" in self.past)
 
     @property
     def steps_error(self) -> float | None:

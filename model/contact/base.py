@@ -138,7 +138,7 @@ def one_sided(g: np.ndarray, c: np.ndarray, onset: float) -> tuple[np.ndarray, n
     c (p − w) beyond. Without such an onset the tangent jumps, and a line search can get stuck at the kink.
 
     Args:
-        g: gaps, negative where the bodies overlap, shape (m,), mm; may be complex.
+        g: gaps, negative where the bodies overlap, shape (m,), mm.
         c: stiffness, shape (m,), N/mm.
         onset: w, mm.
 
@@ -204,3 +204,9 @@ class Contact(ABC):
             span: how far stations that are `aside` of each other are apart along each axis at most, shape (3,), mm.
         """
         return np.zeros(len(stations), dtype=bool)
+
+    def iterate(self) -> None:
+        """Note that a correction starts from the state of the last evaluation, with its stiffness."""
+
+    def forget_iterate(self) -> None:
+        """Forget what the last correction foresees; the next state is another one."""

@@ -79,6 +79,7 @@ class Coils(Contact):
             none,
         )
         self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
+        self._last: tuple[TrialPositions, Pressed] | None = None  # of the last evaluation, for friction
 
     def places(self, pair: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Indices of pairs into arrays of points and places, see `place`."""
@@ -101,6 +102,10 @@ class Coils(Contact):
             self._room = 2 * found
 
     def pressed(self, trial: TrialPositions) -> Pressed:
+        """`search`, or what the evaluation of this very trial state has found."""
+        return self._last[1] if self._last is not None and self._last[0] is trial else self.search(trial)
+
+    def search(self, trial: TrialPositions) -> Pressed:
         """Pairs in contact, with ξ and gaps, their offsets, and the points' positions; these only if there are pairs.
 
         Nothing is sought while no two points can have come closer by the gap that was found clear. The weights of a
@@ -133,7 +138,8 @@ class Coils(Contact):
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces along the connection of closest points, where these touch."""
-        pressed = self.pressed(trial)
+        pressed = self.search(trial)
+        self._last = trial, pressed
         if not len(pressed.pair):
             return self._nothing
         room = Contribution.room(len(pressed.pair), PAIR)
@@ -147,6 +153,7 @@ class Coils(Contact):
 
     def augment(self, trial: TrialPositions) -> None:
         """Increase each point's offset at each place by its penetration."""
+        self._last = None
         before, after = self.multiplier_offset, np.zeros_like(self.overlap)
         pair, where, _ = self.near(trial, before.max())
         at = self.places(pair, where)

@@ -6,7 +6,7 @@ through it and its two neighbours. So every point is a fixed linear combination 
 continuous, and a circle of 16 chords is approximated within 5e-4 of its radius, against 2e-2 for the chords.
 
 The four weights are cubics in ξ. They are evaluated in two ways: `station_weight` one by one in compiled loops,
-`curve_weights` for many points at once, also at complex ξ.
+`curve_weights` for many points at once.
 """
 
 from functools import cached_property
@@ -88,7 +88,7 @@ def points_on_wire(active: np.ndarray, weights: np.ndarray, stations: np.ndarray
 
 
 def curve_weights(cubic: np.ndarray, xi: np.ndarray, order: int = 0) -> np.ndarray:
-    """Weights of the four stations, or their derivatives by ξ; also for complex ξ.
+    """Weights of the four stations, or their derivatives by ξ.
 
     Args:
         cubic: coefficients of the points' elements, shape (m, 4, 4).

@@ -31,5 +31,5 @@ class Memory:
     def __getitem__(self, name: str) -> np.ndarray:
         return self.state[name].trial
 
-    def __setitem__(self, name: str, values: np.ndarray) -> None:
+    def __setitem__(self, name: str, values: np.ndarray | float) -> None:
         self.state[name].trial[...] = values

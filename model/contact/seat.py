@@ -103,25 +103,21 @@ class Seat(Contact):
         """Gap of the underside at all points or the `points`, at `p`, shape (m, 3), negative for penetration, mm."""
         if self.linear:
             return self.side * (p[:, 2] - seats[self.plate.own][LEVEL]) - self.distance[points]
-        return self.surface(self.plate.to_seat_frame(p, seats))[1] - self.distance[points]
+        return self._above(self.plate.to_seat_frame(p, seats)) - self.distance[points]
 
-    def surface(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Normal of the surface under the points `q`, towards the wire, and their distance from it; also if complex."""
-        n, rise, above = np.zeros_like(q), np.sqrt(1.0 + self.slope**2), self.side * q[:, 2]
-        n[:, 2] = self.side / rise
-        if self.slope:
-            ρ = np.sqrt(q[:, 0] ** 2 + q[:, 1] ** 2)
-            n[:, :2] = -self.slope / rise * q[:, :2] / ρ[:, None]
-            above = (above - self.slope * ρ) / rise
-        return n, above
+    def _above(self, q: np.ndarray) -> np.ndarray:
+        """Distance of the points `q` from the surface, mm."""
+        above = self.side * q[:, 2]
+        return (above - self.slope * np.hypot(q[:, 0], q[:, 1])) / np.hypot(1.0, self.slope) if self.slope else above
 
-    def pressures(self, i: np.ndarray, pressed: np.ndarray) -> np.ndarray:
-        """Forces on the points `i` for given penetrations, mm, N; also if complex."""
-        tip = self.stiffness[self.tip] * np.where(pressed.real > 0.0, pressed, 0.0)
-        return np.where(i == self.tip, tip, one_sided(-pressed, self.stiffness[i], self.onset)[0])
+    def pressures(self, i: np.ndarray, pressed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Forces on the points `i` for penetrations `pressed` > 0, mm: N, and their derivatives, N/mm."""
+        force, hardness = one_sided(-pressed, self.stiffness[i], self.onset)
+        hardness[i == self.tip] = self.stiffness[self.tip]
+        return np.where(i == self.tip, hardness * pressed, force), hardness
 
-    def _gap_derivatives(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """∂g/∂q and ∂²g/∂q², shapes (m, 3) and (m, 3, 3)."""
+    def gap_derivatives(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """∂g/∂q, the normal towards the wire, and ∂²g/∂q², shapes (m, 3) and (m, 3, 3)."""
         g, H = np.zeros((len(q), 3)), np.zeros((len(q), 3, 3))
         g[:, 2] = self.side
         if self.slope:
@@ -166,7 +162,7 @@ class Seat(Contact):
         c[tip] = np.where(gap[tip] > 0.0, self.tip_spring * (gap[tip] >= self.slack), self.stiffness[self.tip])
         force[tip] = -c[tip] * taut
         pressure[tip] = np.maximum(force[tip], 0.0)
-        derivatives = self._gap_derivatives(self.plate.to_seat_frame(p, trial.seats))
+        derivatives = self.gap_derivatives(self.plate.to_seat_frame(p, trial.seats))
         grad, hessian = self.plate.derivatives(p, trial.seats, self.points.weights[bearing], *derivatives)
         k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - force[:, None, None] * hessian
         return Contribution(self.dofs[bearing], -force[:, None] * grad, k, pressure, penetration, bearing, onset_force)

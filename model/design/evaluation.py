@@ -135,7 +135,7 @@ class Evaluator:
             known, self.solves = False, self.solves + 1
             analysis = None
             try:
-                analysis = Analysis(case, MPI.COMM_SELF, detailed=False, threads=self._threads)
+                analysis = Analysis(case, MPI.COMM_SELF, detailed=False, threads=self._threads, estimates=False)
                 found = self._read(x, analysis.setup, analysis.run(), began)
             except CoilsetError as error:
                 found = self._failed(x, error, began)

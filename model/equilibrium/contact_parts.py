@@ -77,6 +77,16 @@ class ContactParts:
         once = [replace(part, stiffness=part.pressure).only(self.layout.begins_here(part.dofs)) for part in parts]
         return [Contribution.joined(each) for each in zip(*self.comm.allgather(once), strict=True)]
 
+    def iterate(self) -> None:
+        """Note that a correction starts from the last evaluation."""
+        for contact in self.contacts:
+            contact.iterate()
+
+    def forget_iterate(self) -> None:
+        """Forget what the last correction foresees; the next state is another one."""
+        for contact in self.contacts:
+            contact.forget_iterate()
+
     def augment(self, x: np.ndarray, seats: np.ndarray) -> None:
         """Augment the contacts that have penetrated; collective."""
         trial = self.halo.trial(x, seats)

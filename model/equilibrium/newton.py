@@ -162,5 +162,6 @@ class Newton:
                     return iterations, linear, failed
                 failed += 1
                 X.set(0.0) if good is None else good.copy(X)
+                self.system.forget_iterate()
                 aim = reached + part
                 log.info("no equilibrium of the whole step yet: first %.3g of it", aim)

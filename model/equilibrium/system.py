@@ -240,6 +240,12 @@ class System:
         """Restore the contacts' memories to the last equilibrium."""
         for memory in self.memories:
             memory.state.restore()
+        self.forget_iterate()
+
+    def forget_iterate(self) -> None:
+        """Forget what contacts foresee for the last correction; the next state is another one."""
+        if self.contacts:
+            self.touching.forget_iterate()
         self.expire()
 
     def augment(self) -> None:
@@ -303,6 +309,8 @@ class System:
         self, load: Load, matrix: TangentMatrix, at_step_start: bool = False, share: float | None = None
     ) -> None:
         """Assemble `tangent` with the moduli of the last evaluation, at the present trial state; collective."""
+        if self.contacts:
+            self.touching.iterate()
         matrix.fill(self.acting if self._arms else self.last.contributions, at_step_start, share)
         if load.drag is not None:
             matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)

@@ -1,5 +1,6 @@
 """The past of a rod's wire: coiled, relieved or peened, it is not free of stress before its first load."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -13,12 +14,14 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.base.warning import Warning
 from coilset.model.manufacture.coiling import coil, grind
 from coilset.model.manufacture.peening import Layer, peen, peening_warnings
-from coilset.model.material.creep.creep import Creeping
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.law.functions import HEATING, elasticity
+from coilset.model.material.law.parts import Parts
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
+from coilset.model.section.kinds import Sections
 from coilset.model.section.outline import WHOLE
+from coilset.model.section.rules import DiskRule
 from coilset.model.section.wire import SectionLaw
 
 DIGITS = 9  # to which sections must agree to have the same past
@@ -33,7 +36,7 @@ class _Past:
 
     law: SectionLaw
     coiled: bool
-    relief: tuple[Creeping, ...]
+    relief: tuple[Parts, ...]
     layer: Layer | None
 
 
@@ -53,20 +56,10 @@ def give_past(rod: Rod, spring: object) -> float | None:
     """
     if not isinstance(spring, SpringSpec) or not (spring.made_by or spring.peening):
         return None
-    sections = rod.sections
-    assert isinstance(sections, FibreSections)
-    state = {name: rod.state[name].equilibrium for name in START}
-    law = sections.law_over_time.over(state, state)
-    law = _cold(law) if isinstance(law, np.ndarray) else law
-    past = _Past(
-        law,
-        bool(spring.made_by),
-        _relief(rod, spring.relieved),
-        None if spring.peening is None else _layer(rod, spring.peening),
-    )
+    past, state = _past(rod, spring), {name: rod.state[name].equilibrium for name in START}
     tight, problem = np.zeros((2, *rod.placement.curvature.shape)), None
     try:
-        _through(rod, past, tight)
+        _through(rod.sections, rod.rule, state, past, tight)
     except SolveError as error:
         problem = str(error)
     problem = next((one for one in rod.mesh.comm.allgather(problem) if one), None)
@@ -80,6 +73,36 @@ def give_past(rod: Rod, spring: object) -> float | None:
     ordered = rod.mesh.comm.bcast(rod.line.in_order(np.moveaxis(tight, 0, -1)))
     curvature, torsion = ordered[len(ordered) // 2, 0]
     return float(2.0 * curvature / (curvature**2 + torsion**2)) if past.coiled else None
+
+
+def give_sections_past(
+    sections: Sections, rule: DiskRule, state: Mapping[str, np.ndarray], rod: Rod, spring: object
+) -> None:
+    """Give sections beside the rod's own, such as those of a finer rule, the past of its wire; collective.
+
+    Args:
+        sections: with the placement of some of the rod's cells.
+        rule: theirs.
+        state: their arrays, which are written.
+        rod, spring: as in `give_past`.
+
+    Raises:
+        SolveError: the past has no such state with this rule; on this rank only.
+    """
+    if isinstance(spring, SpringSpec) and (spring.made_by or spring.peening):
+        _through(sections, rule, state, _past(rod, spring), np.zeros((2, *sections.placement.curvature.shape)))
+
+
+def _past(rod: Rod, spring: SpringSpec) -> _Past:
+    """What the sections of a rod went through; collective."""
+    state = {name: rod.state[name].equilibrium for name in START}
+    law = rod.sections.law_over_time.over(state, state)
+    return _Past(
+        law._replace(plastic=_cold(law.plastic)) if isinstance(law, Parts) else _cold(law),
+        bool(spring.made_by),
+        _relief(rod, spring.relieved),
+        None if spring.peening is None else _layer(rod, spring.peening),
+    )
 
 
 def past_warnings(rod: Rod, spring: object) -> list[Warning]:
@@ -106,7 +129,7 @@ def _layer(rod: Rod, peening: Peening) -> Layer:
     return Layer(np.array(peening.depth), -np.array(peening.stress) / E)
 
 
-def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
+def _relief(rod: Rod, relief: Relief | None) -> tuple[Parts, ...]:
     """The law over the intervals of a stress relief; heating and cooling take no time."""
     if relief is None:
         return ()
@@ -120,7 +143,7 @@ def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
     except InputError as error:
         raise InputError(error.problem, "spring.relieved.temperature") from None
     hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, INTERVALS + 1) * np.log1p(1.0 / FIRST))
-    creep = CreepLaw(rod.law.creep, _cold(rod.parameters))
+    creep = CreepLaw(rod.law.creep, rod.law.parts(_cold(rod.parameters)), rate=rod.law.data.rate)
     clocks = [creep.clock(0.0, rod.temperature)]
     for time, temperature in (*((float(time), warm) for time in hours), (float(hours[-1]), rod.temperature)):
         clocks.append(creep.clock(time, temperature, clocks[-1]))
@@ -134,11 +157,13 @@ def _cold(parameters: np.ndarray) -> np.ndarray:
     return found
 
 
-def _through(rod: Rod, past: _Past, tight: np.ndarray) -> None:
+def _through(
+    sections: Sections, rule: DiskRule, state: Mapping[str, np.ndarray], past: _Past, tight: np.ndarray
+) -> None:
     """Write the states of all sections, and their curvature and torsion before they sprang back."""
-    place, sections = rod.placement, rod.sections
     assert isinstance(sections, FibreSections)
-    radius = np.broadcast_to(rod.radius[:, None], place.curvature.shape)
+    place = sections.placement
+    radius = np.broadcast_to(sections.radius[:, None], place.curvature.shape)
     ground = np.where(np.isfinite(place.flat[..., :1]), place.flat, [WHOLE, 0.0, 0.0])
     wires = np.concatenate([np.stack([radius, place.curvature, place.torsion], axis=-1), ground], axis=-1)
     wires = wires.reshape(-1, wires.shape[-1])
@@ -146,7 +171,7 @@ def _through(rod: Rod, past: _Past, tight: np.ndarray) -> None:
     alike = np.round(wires / np.where(size > 0.0, size, 1.0), DIGITS)
     _, first, which = np.unique(alike, axis=0, return_index=True, return_inverse=True)
     virgin, guess = sections.initial_state()["point_state"], None
-    points, surface = (rod.state[name].equilibrium for name in START)
+    points, surface = (state[name] for name in START)
     for k, (radius, curvature, torsion, *_) in enumerate(wires[first]):
         states = virgin[0, 0, :1]
         here = np.nonzero((which == k).reshape(place.curvature.shape))
@@ -155,14 +180,12 @@ def _through(rod: Rod, past: _Past, tight: np.ndarray) -> None:
         if past.coiled and curvature >= STRAIGHT:
             if guess is not None:  # as the last one, turned by as much more as this one is
                 guess = guess[0] + curvature - wires[first][k - 1, 1], guess[1] + torsion - wires[first][k - 1, 2]
-            coiled = coil(
-                past.law, rod.rule, radius, curvature, torsion, states, sections.curved, guess, past.relief, rim
-            )
+            coiled = coil(past.law, rule, radius, curvature, torsion, states, sections.curved, guess, past.relief, rim)
             guess, states = coiled.turned, np.concatenate([coiled.points, coiled.surface])
             tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
         if past.layer is not None:
-            states = peen(past.law, rod.rule, radius, curvature, sections.curved, states, past.layer, rim)
+            states = peen(past.law, rule, radius, curvature, sections.curved, states, past.layer, rim)
         if left is not None and len(states) > 1:
-            states = grind(past.law, *left, radius, sections.curved, states[len(rod.rule) :])
+            states = grind(past.law, *left, radius, sections.curved, states[len(rule) :])
         if len(states) > 1:
-            points[here], surface[here] = np.split(states, [len(rod.rule)])
+            points[here], surface[here] = np.split(states, [len(rule)])

@@ -4,11 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from coilset.model.material.creep.creep import Creeping
 from coilset.model.material.creep.law import CREEP_COLUMNS, TEMPERATURE, CreepLaw
 from coilset.model.material.creep.rate import RateLaw, law_in_time
 from coilset.model.material.law.law import Law
-from coilset.model.material.law.terms import BackStresses
+from coilset.model.material.law.parts import Parts
 from coilset.model.material.points import initial_state
 
 
@@ -26,13 +25,14 @@ class LawOverTime:
 
     def __init__(self, law: Law, parameters: np.ndarray, temperature: float | None) -> None:
         self._law, self._temperature = law, temperature
-        self._point_law = law.point_law(temperature) if law.n_terms else parameters
+        point_law = law.point_law(temperature)
+        self._point_law = law.parts(parameters) if isinstance(point_law, Parts) else parameters
         self.in_time = law_in_time(law, parameters)
 
     def columns(self, back_stress: tuple[str, ...]) -> tuple[str, ...]:
         """Names of what the law adds to the columns of a point's state; `back_stress` names one back stress's."""
         further = tuple(f"{name}_{term}" for term in range(1, self._law.n_terms) for name in back_stress)
-        return further + (CREEP_COLUMNS if self._law.creep else ())
+        return (CREEP_COLUMNS if self._law.creep else ()) + further
 
     def unstressed(self, components: int) -> np.ndarray:
         """The row of an unstressed point of 3 or 6 stresses, shape (1, columns)."""
@@ -40,11 +40,10 @@ class LawOverTime:
         if self._law.creep is None:
             return row
         start = self._law.reference_temperature if self._temperature is None else self._temperature
-        return np.append(row[:, : 2 * components + 1], [[start, 0.0]], axis=1)
+        own, more = 2 * components + 1, components * max(self._law.n_terms - 1, 0)
+        return np.concatenate([row[:, :own], [[start, 0.0]], np.zeros((1, more))], axis=1)
 
-    def over(
-        self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]
-    ) -> np.ndarray | Creeping | BackStresses:
+    def over(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> np.ndarray | Parts:
         """The law from one state to the next; without a `clock` between them it is the law without time.
 
         To the return mapping, a row with the columns of creep is one with a temperature of its own.
@@ -58,10 +57,6 @@ class LawOverTime:
         if not isinstance(law, CreepLaw) or law.own:
             return 0.0
         return self._law.thermal_strain(*(float(state["clock"][TEMPERATURE]) for state in (start, trial)))
-
-    def order(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> int:
-        """Order of the law's accuracy in the length of a step; the rate of plastic strain is its mean over the step."""
-        return 1 if isinstance(self._while_time_passes(start, trial), RateLaw) else 2
 
     def _while_time_passes(
         self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]

@@ -1,8 +1,8 @@
 """The law of a section point: numba selects it by the type of the argument that represents the law.
 
-A parameter array means the return mapping, a `Creeping` adds creep, a `BackStresses` has several back stresses. The
-choice is made when a section's loop is compiled (njit) for one of them: a material has no extra cost for what it does
-not do, and compiles none of it.
+A parameter array means the exponential return map, `Parts` the point problem. The choice is made when a section's loop
+is compiled (njit) for one of them: a material of the first kind has no extra cost for what it does not do, and compiles
+none of it.
 """
 
 from collections.abc import Callable
@@ -13,12 +13,10 @@ from numba import njit, types
 from numba.extending import overload
 
 from coilset.model.base.kernel import KERNEL
-from coilset.model.material.creep import creep
 from coilset.model.material.creep import rod as creep_rod
-from coilset.model.material.law.terms import BackStresses
 from coilset.model.material.point import rod, solid
-from coilset.model.material.point.back_stresses import back_stress_map
-from coilset.model.material.point.rod_points import return_map_points
+from coilset.model.material.point.increment import advance
+from coilset.model.material.point.rod_rows import return_map_points
 
 
 def rod_points(
@@ -30,7 +28,7 @@ def rod_points(
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """One increment of the rod's law at many points, as `rod_points.return_map_points`, or with another law."""
+    """One increment of the rod's law at many points, as `rod_rows.return_map_points`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
 
 
@@ -41,6 +39,11 @@ def solid_point(law: Any, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: n
 
 def rod_point(law: Any, old: np.ndarray, e11: float, g12: float, g13: float, new: np.ndarray, C: np.ndarray) -> int:
     """One increment of the rod's law, as in `rod.return_map`, or with another law."""
+    raise NotImplementedError("only compiled loops call it")
+
+
+def any_point(law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
+    """One increment of the form that `de` belongs to; see `rod_point` and `solid_point`."""
     raise NotImplementedError("only compiled loops call it")
 
 
@@ -83,15 +86,22 @@ def advance_points(
 def _solid_point(law: Any, old: Any, dD: Any, new: Any, C: Any) -> Callable[..., int]:
     if not isinstance(law, types.BaseNamedTuple):
         return lambda law, old, dD, new, C: solid.return_map(law, old, dD, new, C)
-    if law.instance_class is BackStresses:
-        return lambda law, old, dD, new, C: back_stress_map(law, old, dD, new, C)
-    return lambda law, old, dD, new, C: creep.creep_map(law, old, dD, new, C)
+    return lambda law, old, dD, new, C: advance(law, old, dD, new, C)
 
 
 @overload(rod_point, strict=False, inline="always")
 def _rod_point(law: Any, old: Any, e11: Any, g12: Any, g13: Any, new: Any, C: Any) -> Callable[..., int]:
     if not isinstance(law, types.BaseNamedTuple):
         return lambda law, old, e11, g12, g13, new, C: rod.return_map(law, old, e11, g12, g13, new, C)
-    if law.instance_class is BackStresses:
-        return lambda law, old, e11, g12, g13, new, C: back_stress_map(law, old, np.array([e11, g12, g13]), new, C)
     return lambda law, old, e11, g12, g13, new, C: creep_rod.rod_map(law, old, e11, g12, g13, new, C)
+
+
+@overload(any_point, strict=False)
+def _any_point(law: Any, old: Any, de: Any, new: Any, C: Any) -> Callable[..., int]:
+    if isinstance(law, types.BaseNamedTuple):
+        return lambda law, old, de, new, C: advance(law, old, de, new, C)
+    return lambda law, old, de, new, C: (
+        rod.return_map(law, old, de[0], de[1], de[2], new, C)
+        if de.shape[0] == 3
+        else solid.return_map(law, old, de, new, C)
+    )

@@ -5,7 +5,7 @@ at its end, reached in equal increments; components that it does not name remain
 value. At the start every stress is prescribed as zero: tension is `eps11` alone.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -31,6 +31,7 @@ STRESSES = {
 MAX_ITERATIONS = 50
 MAX_HALVINGS = 12
 Temperature = Annotated[float, Unit("K"), Field(gt=0)]
+Advance = Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]]
 
 
 class Step(Strict):
@@ -109,13 +110,14 @@ def _check_targets(step: Step, form: str, place: str, file: str) -> None:
             raise InputError(f"{strain} and {stress} cannot both be prescribed", place, file)
 
 
-def run(law: Law, program: Program, integrator: str = "return_mapping") -> History:
+def run(law: Law, program: Program, advance: Advance = update, jump: float = 0.0) -> History:
     """Drive one point through a program.
 
     Args:
         law: a `Law`.
         program: a `Program`.
-        integrator: see `points.update`.
+        advance: another integrator of the law, with the arguments of `points.update`.
+        jump: by how much, relative to the stress, its choice of sub-steps makes the stress jump.
 
     Returns:
         A `History`.
@@ -125,7 +127,7 @@ def run(law: Law, program: Program, integrator: str = "return_mapping") -> Histo
         itself. SolveError: if an increment cannot be solved, for instance because the material cannot carry a stress.
     """
     _check_temperatures(law, program)
-    point = _Point(law, program.form, integrator, program.temperature)
+    point = _Point(law, program.form, advance, jump, program.temperature)
     rows = [point.row(0)]
     for index, step in enumerate(program.steps):
         start = point.drive(step.to)
@@ -162,14 +164,14 @@ def _check_temperatures(law: Law, program: Program) -> None:
 class _Point:
     """The point in the testing machine: state, total strain, and which components are controlled by strain."""
 
-    def __init__(self, law: Law, form: str, integrator: str, temperature: float | None) -> None:
-        self.law, self.form, self.integrator = law, form, integrator
+    def __init__(self, law: Law, form: str, advance: Advance, jump: float, temperature: float | None) -> None:
+        self.law, self.form, self._update, self._jump = law, form, advance, jump
         self.n = len(STRAINS[form])
         self.temperature = law.reference_temperature if temperature is None else temperature
         self.state = initial_state(law, 1, self.n, self.temperature)[0]
         self.strain = np.zeros(self.n)
         self.by_strain = np.zeros(self.n, dtype=bool)
-        _, tangent, _ = update(law, self.state[None], np.zeros((1, self.n)), temperature=self._at(self.temperature))
+        _, tangent, _ = advance(law, self.state[None], np.zeros((1, self.n)), self._at(self.temperature))
         self.tangent = self._elastic = tangent[0]
 
     def _at(self, end: float) -> tuple[float, float] | None:
@@ -208,8 +210,6 @@ class _Point:
         increment = np.where(held, target - self.strain, 0.0)
         stress = self.state[: self.n]
         scale = max(1.0, float(np.abs(stress).max()), float(np.abs(target[free]).max(initial=0.0)))
-        # Heun's choice of sub-steps makes its stress jump, by its own error at most.
-        jump = 0.0 if self.integrator == "return_mapping" else 0.1 * min(self.law.heun_tolerance, 1e-2) * scale
         last = np.inf
         # The free components follow the given tangent first.
         residual = target[free] - stress[free] - tangent[np.ix_(free, held)] @ increment[held]
@@ -220,9 +220,7 @@ class _Point:
                 except np.linalg.LinAlgError:
                     return False
             try:
-                new, tangents, _ = update(
-                    self.law, self.state[None], increment[None], self.integrator, self._at(temperature)
-                )
+                new, tangents, _ = self._update(self.law, self.state[None], increment[None], self._at(temperature))
             except SolveError:
                 return False
             except InputError as error:  # a trial may be hotter than the increment's end
@@ -231,7 +229,7 @@ class _Point:
             tangent = tangents[0]
             residual = target[free] - new[0, : self.n][free]
             off = np.abs(residual).max(initial=0.0)
-            if off <= 1e-10 * scale or 0.1 * last < off <= jump:
+            if off <= 1e-10 * scale or 0.1 * last < off <= self._jump * scale:
                 self.state, self.tangent, self.temperature = new[0], tangent, temperature
                 self.strain = self.strain + increment
                 return True

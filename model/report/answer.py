@@ -6,9 +6,7 @@ from typing import Any
 
 from coilset.model.figures.panels.panel import with_unit
 from coilset.model.results.files.opened import Run
-from coilset.model.results.records.labels import plain
-
-NOTICED = 0.01  # N: smaller errors are not told apart
+from coilset.model.results.records.labels import largest_errors, within
 
 
 @dataclass(frozen=True)
@@ -60,14 +58,14 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     ):  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
         against = "against the load" if inside * s["force_max_N"] < 0.0 else "with the load"
     return [
-        Number("set", with_unit(s["set_mm"], "mm", 3), share),
-        Number("free length", with_unit(after, "mm", 3), _lengths(s)),
+        Number("set", _within(s["set_mm"], s.get("estimated_set_error_mm"), "mm", 3), share),
+        Number("free length", _within(after, s.get("estimated_set_error_mm"), "mm", 3), _lengths(s)),
         Number(
             "residual shear stress",
-            with_unit(inside, "MPa", 1),
+            _within(inside, s.get("estimated_residual_shear_inside_error_MPa"), "MPa", 1),
             f"inside of the coil{at}{', ' + against if against else ''}",
         ),
-        Number("maximum force", with_unit(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"])),
+        Number("maximum force", _within(s["force_max_N"], s.get("estimated_force_error_N"), "N", 1), _errors(s)),
         Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
         Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", with_unit(s["block_height_mm"], "mm", 2)),
@@ -86,11 +84,15 @@ def _lengths(summary: Mapping[str, Any]) -> str:
     return f"after; {summary['free_length_before_mm']:.3f} mm before{between}"
 
 
-def _error(value: float | None) -> str:
-    if value is None:
-        return "error due to the step size not estimated"
-    size = f"{plain(abs(value), 2)} N" if abs(value) >= NOTICED else f"less than {NOTICED:g} N"
-    return f"{size} estimated error due to the step size"
+def _within(value: float | None, error: float | None, unit: str, digits: int) -> str:
+    return within(value, error, unit, digits).replace("-", "−")
+
+
+def _errors(summary: Mapping[str, Any]) -> str:
+    """What the errors behind ± are mostly caused by."""
+    if summary.get("estimated_force_error_N") is None:
+        return "error not estimated"
+    return f"largest part of the errors ±: {largest_errors(summary.get('estimated_errors'))}"
 
 
 def _after(summary: Mapping[str, Any]) -> str:

@@ -15,12 +15,26 @@ bending moments are greatest at nodes, where contact acts.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 STRAINS = 6  # ε, γ12, γ13, φ′, −w″, v″
 PER_LENGTH = 3  # from this one on they are angles by the element's length
+
+
+class AtSections(NamedTuple):
+    """An element at its sections, for compiled loops.
+
+    Attributes:
+        xi: abscissae ξ = x/l, shape (sections,).
+        mode_strains: the section strain of each mode, shape (modes,).
+        mode_values: P(ξ) of each mode, shape (sections, modes).
+    """
+
+    xi: np.ndarray
+    mode_strains: np.ndarray
+    mode_values: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -54,15 +68,11 @@ class Element:
         return np.array(self.abscissae)
 
     @cached_property
-    def mode_strains(self) -> np.ndarray:
-        """The section strain of each mode, shape (modes,)."""
-        return np.array([strain for strain, _ in self.modes], np.int64)
-
-    @cached_property
-    def mode_values(self) -> np.ndarray:
-        """P(ξ) of each mode at the sections, shape (sections, modes)."""
+    def at_sections(self) -> AtSections:
+        """Abscissae and modes at the sections."""
+        strains = np.array([strain for strain, _ in self.modes], np.int64)
         values = [[legendre(degree, xi) for _, degree in self.modes] for xi in self.abscissae]
-        return np.array(values, float).reshape(len(self.abscissae), len(self.modes))
+        return AtSections(self.xi, strains, np.array(values, float).reshape(len(self.abscissae), len(self.modes)))
 
 
 def legendre(degree: int, xi: Any) -> Any:

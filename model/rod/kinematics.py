@@ -1,11 +1,13 @@
 """From nodes to section strains: the moving triad of each element, and the rotations relative to it (5.2.5–5.2.14)."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from coilset.model.rod.elements import PER_LENGTH
+from coilset.model.rod.elements import PER_LENGTH, AtSections
+from coilset.model.rod.numbering import Numbering
 from coilset.model.rotations.kernels import (
     exponential,
     inverse_chart_tangent,
@@ -14,6 +16,50 @@ from coilset.model.rotations.kernels import (
     multiply_transposed,
     rotate,
 )
+
+
+class Configuration(NamedTuple):
+    """Nodes and cells of a rod.
+
+    Attributes:
+        x: positions of the nodes, shape (nodes, 3), mm.
+        R: rotations of the nodes since the stress-free state, shape (nodes, 3, 3).
+        chord: from node 1 to node 2, shape (cells, 3), mm.
+        own: excess shear angles and modes, shape (cells, own).
+    """
+
+    x: np.ndarray
+    R: np.ndarray
+    chord: np.ndarray
+    own: np.ndarray
+
+
+class StressFree(NamedTuple):
+    """Elements in the stress-free state.
+
+    Attributes:
+        E: triads (columns), shape (cells, 3, 3).
+        l: chord lengths, shape (cells,), mm.
+        timoshenko_factor: c, part of the rotations in the shear angles, shape (cells,), see coilset.model.rod.forms.
+    """
+
+    E: np.ndarray
+    l: np.ndarray
+    timoshenko_factor: np.ndarray
+
+
+class Triads(NamedTuple):
+    """The moving triads of the elements.
+
+    Attributes:
+        E: triads (columns), shape (cells, 3, 3).
+        P: rate of the nodes' rotations θ against the triad for a relative spin, shape (cells, 2, 3, 3).
+        W: what makes the triad's spin about its chord, see mean_triad, shape (cells, 3, 3).
+    """
+
+    E: np.ndarray
+    P: np.ndarray
+    W: np.ndarray
 
 
 def chord_triads(chords: np.ndarray) -> np.ndarray:
@@ -31,33 +77,28 @@ def chord_triads(chords: np.ndarray) -> np.ndarray:
 @njit(cache=True)
 def displace_nodes(
     increment: np.ndarray,
-    u_dofs: np.ndarray,
-    rotation_dofs: np.ndarray,
-    own_dofs: np.ndarray,
+    numbering: Numbering,
     cells: np.ndarray,
-    x0: np.ndarray,
-    chord0: np.ndarray,
-    R0: np.ndarray,
-    own0: np.ndarray,
-    x: np.ndarray,
-    chord: np.ndarray,
-    R: np.ndarray,
-    own: np.ndarray,
+    start: Configuration,
+    trial: Configuration,
     T: np.ndarray,
     T_cells: np.ndarray,
 ) -> None:
-    """Bring nodes and the elements' own unknowns from the last equilibrium, 0, to the increments of the unknowns.
+    """Bring nodes and the elements' own unknowns from the last equilibrium to the increments of the unknowns.
 
     Chords are updated by differences of the increments: differences of the positions would lose digits as l/L.
 
     Args:
         increment: of the local unknowns.
-        u_dofs, rotation_dofs: of the nodes, shape (nodes, 3); own_dofs: of the cells, shape (cells, own).
+        numbering: of these.
         cells: node numbers, shape (cells, 2).
-        x, x0: positions, shape (nodes, 3), mm; chord, chord0: shape (cells, 3), mm.
-        R, R0: rotations of the nodes, shape (nodes, 3, 3); own, own0: shape (cells, own).
+        start: at the last equilibrium.
+        trial: written.
         T: written, tangents of the nodes' charts, shape (nodes, 3, 3); T_cells: the same of the cells' nodes.
     """
+    u_dofs, rotation_dofs, own_dofs, _ = numbering
+    x0, R0, chord0, own0 = start
+    x, R, chord, own = trial
     v, turn = np.empty(3), np.empty((3, 3))
     for node in range(len(x)):
         for k in range(3):
@@ -130,18 +171,10 @@ def mean_triad(
 @njit(cache=True)
 def section_strains(
     cells: np.ndarray,
-    chords: np.ndarray,
-    R: np.ndarray,
-    E0: np.ndarray,
-    l0: np.ndarray,
-    own: np.ndarray,
-    timoshenko_factor: np.ndarray,
-    xi: np.ndarray,
-    mode_strains: np.ndarray,
-    mode_values: np.ndarray,
-    E: np.ndarray,
-    P: np.ndarray,
-    W: np.ndarray,
+    trial: Configuration,
+    unloaded: StressFree,
+    sections: AtSections,
+    triads: Triads,
     e: np.ndarray,
 ) -> None:
     """Strains of all elements at their sections, from (5.2.4) in the element's moving triad.
@@ -151,17 +184,16 @@ def section_strains(
 
     Args:
         cells: node numbers, shape (cells, 2).
-        chords: current chords from node 1 to node 2, shape (cells, 3), mm.
-        R: rotations of the nodes since the stress-free state, shape (nodes, 3, 3).
-        E0: triads of the stress-free state, shape (cells, 3, 3), l0: chord lengths there, shape (cells,).
-        own: excess shear angles and modes, shape (cells, own), timoshenko_factor: c, part of the rotations in the
-            shear angles, shape (cells,), see coilset.model.rod.forms.
-        xi, mode_strains, mode_values: of the Element.
-        E: written, current triads (columns), shape (cells, 3, 3).
-        P: written, rate of the rotations θ against the triad for a relative spin, shape (cells, 2, 3, 3).
-        W: written, what makes the triad's spin about its chord, see mean_triad, shape (cells, 3, 3).
+        trial: the current configuration.
+        unloaded: the stress-free state.
+        sections: of the Element.
+        triads: written.
         e: written, ε, γ12, γ13, φ′, −w″, v″ of the chord axis, shape (cells, sections, 6); ε is logarithmic.
     """
+    _, R, chords, own = trial
+    E0, l0, timoshenko_factor = unloaded
+    xi, mode_strains, mode_values = sections
+    E, P, W = triads
     chord = np.empty(3)
     A = np.empty((3, 3))
     B = np.empty((3, 3))

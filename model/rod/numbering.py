@@ -1,6 +1,6 @@
-"""Local numbers of a rod's unknowns; where they lie in PETSc's vectors is said by its LineLayout."""
+"""Local numbers of a rod's unknowns; their positions in PETSc's vectors are those of its LineLayout."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from dolfinx import fem
@@ -8,8 +8,7 @@ from dolfinx import fem
 from coilset.model.base.compat import geometry_dofs
 
 
-@dataclass(frozen=True)
-class Numbering:
+class Numbering(NamedTuple):
     """Numbers of the unknowns in the functions of a rod's space.
 
     Attributes:

@@ -15,7 +15,8 @@ from numba import njit
 
 from coilset.model.rod.assembly import blocks
 from coilset.model.rod.coefficients import Coefficients
-from coilset.model.rod.elements import PER_LENGTH, Element
+from coilset.model.rod.elements import PER_LENGTH, AtSections, Element
+from coilset.model.rod.kinematics import Triads
 from coilset.model.rod.numbering import Numbering
 
 BLOCK = 4096  # cells that are taken together, so that no large arrays are made on the way
@@ -25,31 +26,29 @@ BLOCK = 4096  # cells that are taken together, so that no large arrays are made 
 def linear_strains(
     cells: np.ndarray,
     chords: np.ndarray,
-    E: np.ndarray,
+    triads: Triads,
     T: np.ndarray,
-    P: np.ndarray,
-    W: np.ndarray,
     timoshenko_factor: np.ndarray,
     strain: np.ndarray,
-    u: np.ndarray,
-    rotations: np.ndarray,
-    own: np.ndarray,
+    numbering: Numbering,
     increments: np.ndarray,
-    xi: np.ndarray,
-    mode_strains: np.ndarray,
-    mode_values: np.ndarray,
+    sections: AtSections,
     e: np.ndarray,
 ) -> None:
     """Write B δ, the change of the section strains by increments of first order.
 
     Args:
         cells, chords: of the Prediction.
-        E, T, P, W, timoshenko_factor, strain: Coefficients, the last one of these is `e`.
-        u, rotations, own: of the Numbering.
+        triads: of the elements.
+        T, timoshenko_factor, strain: Coefficients, the last one of these is `e`.
+        numbering: of the unknowns.
         increments: of the local unknowns, mm and rad.
-        xi, mode_strains, mode_values: of the Element.
+        sections: of the Element.
         e: written, ε, γ12, γ13, φ′, −w″, v″ at the sections, shape (cells, sections, 6).
     """
+    E, P, W = triads
+    u, rotations, own, _ = numbering
+    xi, mode_strains, mode_values = sections
     spins, t, frame, d = np.empty((2, 3)), np.empty((2, 3)), np.empty(3), np.empty(3)
     for c in range(len(cells)):
         first, second = cells[c, 0], cells[c, 1]
@@ -120,26 +119,14 @@ class Prediction:
         self._on_trial = c.s, c.e, c.D
         self.forces, self.strain, self.tangent = (np.zeros_like(each) for each in self._on_trial)
         self.change = np.zeros_like(c.s)
-        self._arguments = (
-            cells,
-            chords,
-            c.E,
-            c.T,
-            c.P,
-            c.W,
-            c.timoshenko_factor,
-            c.e,
-            numbering.u,
-            numbering.rotations,
-            numbering.own,
-        )
-        self._sections = element.xi, element.mode_strains, element.mode_values
+        self._before = cells, chords, Triads(c.E, c.P, c.W), c.T, c.timoshenko_factor, c.e, numbering
+        self._sections = element.at_sections
 
     def begin(self, correction: np.ndarray) -> None:
         """Take the state on trial, from which a correction of the local unknowns begins, mm and rad."""
         for kept, on_trial in zip((self.forces, self.strain, self.tangent), self._on_trial, strict=True):
             np.copyto(kept, on_trial)
-        linear_strains(*self._arguments, correction, *self._sections, self.change)
+        linear_strains(*self._before, correction, self._sections, self.change)
 
     def forces_after(self, share: float) -> None:
         """Write s + D B δ after a share of the correction into the predicted forces."""

@@ -25,7 +25,14 @@ from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.element_kernel import ElementKernel
 from coilset.model.rod.elements import THESIS, Element
 from coilset.model.rod.finer_path import CLOCKS, FinerPath
-from coilset.model.rod.kinematics import chord_triads, displace_nodes, section_strains
+from coilset.model.rod.kinematics import (
+    Configuration,
+    StressFree,
+    Triads,
+    chord_triads,
+    displace_nodes,
+    section_strains,
+)
 from coilset.model.rod.numbering import Numbering
 from coilset.model.rod.prediction import Prediction
 from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
@@ -138,39 +145,11 @@ class Rod(Body):
             known = {"section_forces": c.s, "section_tangents": c.D}
             self._forces = [state.add(name, values, Where.ELEMENT) for name, values in known.items()]
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
-        self._of_nodes = (
-            self._increment,
-            numbering.u,
-            numbering.rotations,
-            numbering.own,
-            self.cells,
-            self._x.equilibrium,
-            self._chord.equilibrium,
-            self._R.equilibrium,
-            self._own.equilibrium,
-            self._x.trial,
-            self._chord.trial,
-            self._R.trial,
-            self._own.trial,
-            self.chart,
-            c.T,
-        )
-        self._of_cells = (
-            self.cells,
-            self._chord.trial,
-            self._R.trial,
-            self.E0,
-            self.l0,
-            self._own.trial,
-            c.timoshenko_factor,
-            self.element.xi,
-            self.element.mode_strains,
-            self.element.mode_values,
-            c.E,
-            c.P,
-            c.W,
-            c.e,
-        )
+        fields = self._x, self._R, self._chord, self._own
+        start, trial = (Configuration(*(getattr(field, when) for field in fields)) for when in ("equilibrium", "trial"))
+        self._of_nodes = numbering, self.cells, start, trial, self.chart, c.T
+        unloaded = StressFree(self.E0, self.l0, c.timoshenko_factor)
+        self._of_cells = self.cells, trial, unloaded, self.element.at_sections, Triads(c.E, c.P, c.W), c.e
         self.rest()
 
     def rest(self) -> None:
@@ -246,12 +225,12 @@ class Rod(Body):
     def _move(self) -> None:
         """Bring nodes, frames and strains to the increments."""
         if not self.levers:
-            displace_nodes(*self._of_nodes)
+            displace_nodes(self._increment, *self._of_nodes)
         else:
             increments = self._increment.copy()
             for lever in self.levers:
                 lever.carry(increments, self._R.equilibrium[lever.node])
-            displace_nodes(increments, *self._of_nodes[1:])
+            displace_nodes(increments, *self._of_nodes)
         section_strains(*self._of_cells)
 
     def advance(self) -> None:

@@ -1,1 +1,1 @@
-"""Finite rotations by rotation vectors: compiled `kernels` for single nodes, `vectors` for arrays, also complex."""
+"""Finite rotations by rotation vectors: `kernels` for single nodes, `vectors` for derivatives, `triples` of numbers."""

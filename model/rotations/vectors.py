@@ -1,4 +1,4 @@
-"""Finite rotations of many vectors at once, also complex ones, and derivatives of the rotation matrix.
+"""Rotation matrices, the tangents of their chart, and derivatives of both by the rotation vector.
 
 With the rotation vector θ, α = |θ| and [θ] a = θ × a, Rodrigues' formula and the tangent of its chart are
 
@@ -27,7 +27,7 @@ def stumpff(square: np.ndarray) -> list[np.ndarray]:
     The two highest come from their series, the others by c_k = 1/k! − s c_{k+2}, which loses no digits up to s = (2π)².
 
     Args:
-        square: s, squares of angles, real or complex, of any shape.
+        square: s, squares of angles, of any shape.
 
     Returns:
         c0 … c6, each of that shape.
@@ -50,11 +50,6 @@ def cross_matrix(v: np.ndarray) -> np.ndarray:
 AXES = np.array([cross_matrix(axis) for axis in np.eye(3)])  # ∂[θ]/∂θk
 PRODUCTS = np.einsum("kij,ljm->klim", AXES, AXES)
 PRODUCTS = PRODUCTS + np.swapaxes(PRODUCTS, 0, 1)  # ∂²[θ]²/∂θk∂θl
-
-
-def _squares(v: np.ndarray) -> np.ndarray:
-    """|v|² without conjugation, shape (…, 3) → (…, 1)."""
-    return (v * v).sum(axis=-1, keepdims=True)
 
 
 def rotation_matrix(θ: ArrayLike) -> np.ndarray:
@@ -103,22 +98,20 @@ def rotation_derivatives(θ: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.nda
     return np.eye(3) + c1 * M + c2 * M2, dR, ddR
 
 
-def rotate(v: np.ndarray, θ: np.ndarray) -> np.ndarray:
-    """R v; vectors and rotation vectors, rad, shape (…, 3), real or complex."""
-    _, c1, c2, *_ = stumpff(_squares(θ))
-    across = np.cross(θ, v)
-    return v + c1 * across + c2 * np.cross(θ, across)
+def chart_derivatives(θ: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The chart's tangent with its derivatives by the rotation vector.
 
+    T,k = c2 M,k + c3 (M²),k + θk (a2 M + a3 M²), with M, a2 as in `rotation_derivatives` and a3 = 2 dc3/ds = 3 c5 − c4.
 
-def rotate_back(v: np.ndarray, θ: np.ndarray) -> np.ndarray:
-    """Rᵀ v; vectors and rotation vectors, rad, shape (…, 3), real or complex."""
-    _, c1, c2, *_ = stumpff(_squares(θ))
-    across = np.cross(θ, v)
-    return v - c1 * across + c2 * np.cross(θ, across)
+    Args:
+        θ: rotation vector, shape (3,), rad.
 
-
-def moment_to_chart(M: np.ndarray, θ: np.ndarray) -> np.ndarray:
-    """Tᵀ M, the force conjugate to θ of the moment M: M · ω = (Tᵀ M) · θ̇; shape (…, 3), real or complex."""
-    _, _, c2, c3, *_ = stumpff(_squares(θ))
-    across = np.cross(θ, M)
-    return M - c2 * across + c3 * np.cross(θ, across)
+    Returns:
+        T and ∂T/∂θk, shapes (3, 3) and (3, 3, 3), differentiation first; right to rounding up to 2π.
+    """
+    _, _, c2, c3, c4, c5, _ = stumpff(np.asarray(θ @ θ))
+    M = cross_matrix(θ)
+    M2 = M @ M
+    along = (2.0 * c4 - c3) * M + (3.0 * c5 - c4) * M2
+    dT = c2 * AXES + c3 * (AXES @ M + M @ AXES) + θ[:, None, None] * along
+    return np.eye(3) + c2 * M + c3 * M2, dT

@@ -32,6 +32,7 @@ from coilset.model.run.build import (
     build_setup,
     build_wire,
 )
+from coilset.model.run.companion import estimated
 from coilset.model.run.recorder import Recorder
 from coilset.model.standards.wires.law import case_law
 
@@ -54,6 +55,8 @@ class Analysis:
         comm: MPI communicator.
         detailed: also record the seats' reactions and the wire after every step.
         threads: of each rank, see coilset.model.runtime.threads.
+        estimates: estimate the errors of mesh, section and contact at the end of a run, see
+            coilset.model.run.companion; never with `accuracy: none`.
 
     Raises:
         InputError: if the spring or the material cannot be built.
@@ -64,8 +67,16 @@ class Analysis:
         system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
 
-    def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD, detailed: bool = True, threads: int = 1) -> None:
+    def __init__(
+        self,
+        case: Case,
+        comm: MPI.Comm = MPI.COMM_WORLD,
+        detailed: bool = True,
+        threads: int = 1,
+        estimates: bool = True,
+    ) -> None:
         self.case, self.comm = case, comm
+        self._estimates = estimates and case.steps_error is not None
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)
         check_steps(case)
@@ -152,7 +163,7 @@ class Analysis:
             self.system.restore()
             self.recorder.add_snapshot("last equilibrium")
             raise
-        self.recorder.end()
+        self.recorder.end(estimated(self) if self._estimates and self.result.steps else self.result)
         return self.result
 
     def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:

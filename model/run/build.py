@@ -69,9 +69,9 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     """
     element = ELEMENTS[case.mesh.element]
     turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-    section, automatic = case.mesh.section, case.solver.control.steps.automatic
+    section, rule, automatic = case.mesh.section, case.section_rule, case.solver.control.steps.automatic
     steps = sum(phase.count(automatic) for phase in case.loading)
-    points = section.points * len(element.abscissae) // 2  # an effort is that of two sections
+    points = 2 * len(rule) * len(element.abscissae) // 2  # an effort is that of two sections
     effort = Effort.of(len(turns) - 1, points, steps, case.steps_error is not None)
     effort.check_memory(machine_memory())
     # before the rod is made, which takes the memory that this needs for a moment
@@ -89,7 +89,7 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
         line,
         radius,
         law,
-        section.build(),
+        rule,
         placement,
         case.temperature,
         section.kind,

@@ -61,9 +61,9 @@ class Recorder:
         """Continue with the result of a checkpoint."""
         self.result, self._warned = result, None
 
-    def end(self) -> None:
-        """The load program is complete."""
-        self.result = replace(self.result, complete=True)
+    def end(self, result: Result) -> None:
+        """The load program is complete, with this result."""
+        self.result = replace(result, complete=True)
 
     def record(self, phase: int, taken: StepTaken, loading: Sequence[AnyPhase]) -> Step:
         """Add the last equilibrium to the result; collective.
@@ -122,8 +122,8 @@ class Recorder:
             plastic_work_max_N_per_mm2=self._greatest_plastic_work(),
             lift_off_mm=lift_off,
             least_rise=self._least_rise.of(x),
-            estimated_force_error_N=force_error,
-            estimated_height_error_mm=height_error,
+            steps_force_error_N=force_error,
+            steps_height_error_mm=height_error,
             hours=float(self.rod.clock[0]),
             temperature_K=self.rod.hottest,
             load_loss_percent=self._load_loss(phase, force, loading),

@@ -16,6 +16,9 @@ from coilset.model.runtime.processes import usable_cores
 LEAST = 1024  # section points of a thread: the law takes some 100 µs for them, as long as a thread takes to begin
 
 
+NOTHING = np.zeros(2, dtype=np.int64)  # ends of a part without sections
+
+
 def usual(ranks: int) -> int:
     """Default number of threads per rank: as many as there are cores on one rank, else one."""
     return usable_cores() if ranks == 1 else 1
@@ -50,6 +53,8 @@ class Threads:
             False if a part returned False.
         """
         ends = self.ends(count, points)
+        if len(ends) > 2:
+            part(NOTHING, 0, *arguments)  # loads the function: LLVM must not load it in several threads at a time
         others = [_pool().submit(part, ends, k, *arguments) for k in range(1, len(ends) - 1)]
         found = [part(ends, 0, *arguments), *(other.result() for other in others)]
         return False not in found
@@ -58,7 +63,7 @@ class Threads:
 @lru_cache
 def _ends(parts: int, count: int) -> np.ndarray:
     """Where equal parts begin and end; the same few are requested at every evaluation."""
-    return np.arange(parts + 1) * count // parts
+    return np.arange(parts + 1, dtype=np.int64) * count // parts
 
 
 @lru_cache

@@ -41,13 +41,13 @@ def update_points(
     """Advance the points of a section to the end of an increment.
 
     Args:
-        p: parameters of the material law, or a Creeping.
+        p: parameters of the material law, or Parts.
         fibres: y, z, u, v of the points, mm, and their areas, mm², shape (5, points).
         shape: g, a22, a23, a32, a33 of the points, shape (5, points).
         d: increments of the section strains, shape (6,).
         old, new: states of the points at the start, and at the end, which is written, shape (points, n_state).
         strain: work space, shape (3, points).
-        C, with_tangent, count: as in `rod_points.return_map_points`.
+        C, with_tangent, count: as in `rod_rows.return_map_points`.
 
     Returns:
         Whether the law found a solution at all points.

@@ -5,8 +5,7 @@ import math
 import numpy as np
 
 from coilset.model.base.errors import SolveError
-from coilset.model.material.creep.creep import Creeping
-from coilset.model.material.law.terms import BackStresses
+from coilset.model.material.law.parts import Parts
 from coilset.model.material.point_law import advance_points
 from coilset.model.section.integration import section
 from coilset.model.section.rules import DiskRule, rim
@@ -14,7 +13,7 @@ from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 
 TWIST, BEND = 3, 5  # φ′ and κ3
 LOCAL = 25
-SectionLaw = np.ndarray | Creeping | BackStresses
+SectionLaw = np.ndarray | Parts
 
 
 class Wire:

@@ -168,17 +168,18 @@ class SliceProblem:
 
     # ---- steps -----------------------------------------------------------------------------------------------------
 
-    def go_to_rise(self, rise: float, turn: float | None = None) -> Effort:
+    def go_to_rise(self, rise: float, turn: float | None = None, hours: float = 0.0) -> Effort:
         """Find the equilibrium at a rise h̄, mm/rad; a step that does not converge is halved.
 
         Args:
             rise: h̄ at the end of the step.
             turn: λ at the end of the step if the ends are turned; not with free ends.
+            hours: that it takes.
 
         Raises:
             SolveError: if none is found even after `MAX_CUTS` cuts; the last equilibrium is kept.
         """
-        return self._go(lambda: self.body.rise, rise, by_force=False, turn=turn)
+        return self._go(lambda: self.body.rise, rise, by_force=False, turn=turn, hours=hours)
 
     def go_to_force(self, force: float) -> Effort:
         """Find the equilibrium under an axial force, compression positive, N; otherwise as `go_to_rise`."""
@@ -196,7 +197,14 @@ class SliceProblem:
         self.body.restore()
         return force, stress
 
-    def _go(self, where: Callable[[], float], target: float, by_force: bool, turn: float | None = None) -> Effort:
+    def _go(
+        self,
+        where: Callable[[], float],
+        target: float,
+        by_force: bool,
+        turn: float | None = None,
+        hours: float = 0.0,
+    ) -> Effort:
         begin, done, part, iterations, cuts = where(), 0.0, 1.0, 0, 0
         turned = 0.0 if turn is None else turn - self.body.turn
         while done < 1.0:
@@ -205,6 +213,7 @@ class SliceProblem:
             direction = np.sign(value - self.force) if by_force else np.sign(self.body.rise - value)
             if direction * self._direction < 0.0:
                 self.body.start_elastic()
+            self.body.pass_time((end - done) * hours)
             converged = self._attempt(value, by_force, (end - done) * turned)
             iterations += 1 + self.snes.getIterationNumber()
             if converged and self._sinks_in():
@@ -263,12 +272,14 @@ class SliceProblem:
         self._at, self._good = np.zeros(self._n + 2), True
         if self.touching:
             self._pressure = self.contact.evaluate()
+        if self.body.time_passes:  # what is out of balance then drives the step
+            self.body.update()
         residual = self._residual_forces()
         self._assemble()
         b, self._load = -residual, np.linalg.norm(residual)
         if not by_force:
             b[-2] = value - self.body.rise
-            self._load = self._column_norm(RISE) * abs(b[-2])
+            self._load = self._column_norm(RISE) * abs(b[-2]) + (self._load if self.body.time_passes else 0.0)
         if turning:
             b[-1] = turning * self._scale[TURN]
             self._load += self._column_norm(TURN) * abs(b[-1])

@@ -10,7 +10,7 @@ from coilset.meshes.section import SectionMesh
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.errors import InputError
 from coilset.model.material.law.law import Law
-from coilset.model.material.points import initial_state
+from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.slice.forms import RISE, TURN, SliceForms, assemble
 from coilset.model.solid.kinematics import push_forward, stretches
 from coilset.model.solid.points import update_points
@@ -69,6 +69,8 @@ class Slice:
         gradient: of the increment at the points in its final configuration, shape (points, 3, 3).
         places, areas: of the points in the unloaded section, shapes (points, 2), mm, and (points,), mm².
         watches: each is notified of every new equilibrium.
+        clock: hours since the start, temperature (K) and warm hours at the last equilibrium.
+        parameters: the law over the next step, for the compiled loops.
 
     Raises:
         InputError: a section that reaches the coil's axis, or a temperature outside the material's table.
@@ -88,10 +90,13 @@ class Slice:
         self.start = self.forms.x.x.array.reshape(-1, 3).copy()
         self.forms.old.value[:] = coil.rise, 1.0
         self.increment = self.forms.increment.value
-        self.temperature, self.parameters = temperature, law.point_law(temperature)
+        self.temperature = law.reference_temperature if temperature is None else temperature
+        self._over_time = LawOverTime(law, law.parameters(temperature), temperature)
+        self.clock = np.array([0.0, self.temperature, 0.0])
+        self.pass_time(0.0)
         self.watches: list[Follower] = []
         n = len(self.forms.cells) * len(self.forms.points)
-        self.state = initial_state(law, n, 6, temperature)
+        self.state = self.unstressed(n)
         self.trial = self.state.copy()
         self._stress = self.forms.stress.x.array.reshape(n, 6)
         self._moduli = self.forms.moduli.x.array.reshape(n, 6, 6)
@@ -100,6 +105,28 @@ class Slice:
         self.places, self.areas = self._places()
         self.update()
         self._committed = self._stress.copy(), self._moduli.copy()
+
+    def unstressed(self, points: int) -> np.ndarray:
+        """History rows of unstressed points, shape (points, n_state)."""
+        return np.tile(self._over_time.unstressed(6), (points, 1))
+
+    def pass_time(self, hours: float) -> None:
+        """Let the next step take some hours; commit and restore end this.
+
+        Raises:
+            ValueError: if the material does not depend on time.
+        """
+        self._end = self.clock
+        if hours > 0.0:
+            if self._over_time.in_time is None:
+                raise ValueError(f"'{self.law.name}' does not depend on time")
+            self._end = self._over_time.in_time.clock(float(self.clock[0]) + hours, float(self.clock[1]), self.clock)
+        self.parameters = self._over_time.over({"clock": self.clock}, {"clock": self._end})
+
+    @property
+    def time_passes(self) -> bool:
+        """Whether the next step takes time."""
+        return self._end is not self.clock
 
     def _places(self) -> tuple[np.ndarray, np.ndarray]:
         """Positions of the points in the unloaded section, shape (points, 2), mm, and their areas, mm²."""
@@ -164,6 +191,8 @@ class Slice:
         self.forms.x.x.array[:] += self.forms.u.x.array
         self.forms.old.value[:] += self.increment
         self.state[:] = self.trial
+        self.clock = self._end
+        self.pass_time(0.0)
         self.u[:], self.increment[:] = 0.0, 0.0
         for kept, now in zip(self._committed, (self._stress, self._moduli), strict=True):
             kept[:] = now
@@ -174,6 +203,7 @@ class Slice:
         for kept, now in zip(self._committed, (self._stress, self._moduli), strict=True):
             now[:] = kept
         self.trial[:] = self.state
+        self.pass_time(0.0)
         self.forces = assemble(self.forms["residual"]).reshape(-1, 3)
 
     def start_elastic(self) -> None:

@@ -10,7 +10,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from coilset.model.base.errors import SolveError
-from coilset.model.material.points import initial_state
 from coilset.model.slice.slice import Slice
 from coilset.model.solid.kinematics import push_forward, stretches
 from coilset.model.solid.points import update_points
@@ -33,7 +32,7 @@ class Watch:
     def __init__(self, body: Slice, places: np.ndarray):
         self.body, self.places = body, np.atleast_2d(np.asarray(places, float))
         self._weights = patch_weights(body.places, self.places)
-        self.state = initial_state(body.law, len(self.places), 6, body.temperature)
+        self.state = body.unstressed(len(self.places))
         self._trial = self.state.copy()
         body.watches.append(self)
 

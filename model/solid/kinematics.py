@@ -202,7 +202,8 @@ def push_forward(
 
     Args:
         state: point states after the increment in the unrotated frame; stress, back stress and, behind b*, each six
-            entries of further back stresses are rotated in place. Shape (points, n).
+            entries of further back stresses are rotated in place; up to five before them are scalars. Shape (points,
+            n).
         C: ∂σ/∂D of the law (columns for strain components with doubled shear), shape (points, 6, 6), MPa.
         axes, rotation, log_stretch: of `stretches`.
         stress: written, Cauchy stress, shape (points, 6), MPa.
@@ -235,7 +236,7 @@ def push_forward(
                 moduli[point, i, j] = entry / (weight[i] * weight[j])
         turn(MR, state[point, :6], state[point, :6])
         turn(MR, state[point, 6:12], state[point, 6:12])
-        for first in range(13, state.shape[1] - 5, 6):
+        for first in range(13 + (state.shape[1] - 13) % 6, state.shape[1] - 5, 6):
             turn(MR, state[point, first : first + 6], state[point, first : first + 6])
         for a in range(6):
             stress[point, a] = state[point, a]

@@ -1,13 +1,14 @@
 """The material law at the integration points of the solid."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numba import njit
 
 from coilset.model.material.law.law import Law
+from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.material.point_law import solid_point
-from coilset.model.material.points import initial_state
 
 
 @njit(cache=True)
@@ -15,7 +16,7 @@ def update_points(p: Any, old: np.ndarray, strain: np.ndarray, new: np.ndarray, 
     """Integrate the law over the increment at all points.
 
     Args:
-        p: parameters of the law, or a BackStresses.
+        p: parameters of the law, or Parts.
         old, new: point states, shape (points, n_state); `new` is written.
         strain: increment ln U, components 11, 22, 33, 12, 13, 23 with doubled shear, shape (points, 6).
         C: written, dσ/dε for strain components with doubled shear, shape (points, 6, 6), MPa.
@@ -35,16 +36,26 @@ class MaterialPoints:
     Args:
         law: `coilset.model.material.law.law.Law`.
         temperature: K; default is the law's reference temperature.
+
+    Attributes:
+        in_time: the law in time, which has clocks; None for a material that does not depend on it.
     """
 
     def __init__(self, law: Law, temperature: float | None = None) -> None:
-        self.law, self.temperature = law, temperature
-        self._parameters = law.point_law(temperature)
+        self.law = law
+        self.temperature = law.reference_temperature if temperature is None else temperature
+        self._over_time = LawOverTime(law, law.parameters(temperature), temperature)
+        self.in_time = self._over_time.in_time
+        self.pass_time({}, {})
 
     def initial_state(self, points: int) -> np.ndarray:
         """States of unstressed points, shape (points, n_state); stress and back stress come first, 6 entries each."""
-        return initial_state(self.law, points, 6, self.temperature)
+        return np.tile(self._over_time.unstressed(6), (points, 1))
+
+    def pass_time(self, start: Mapping[str, np.ndarray], end: Mapping[str, np.ndarray]) -> None:
+        """Let increments from now on lead from one state to another, whose `clock`s tell their time."""
+        self._point_law = self._over_time.over(start, end)
 
     def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
         """Write new point states and moduli, see `update_points`; returns False if the law found no solution."""
-        return update_points(self._parameters, old, strain, new, C) == 0
+        return update_points(self._point_law, old, strain, new, C) == 0

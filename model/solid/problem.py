@@ -1,6 +1,7 @@
 """The solid between its two rigid heads: equilibrium under prescribed motion of the heads."""
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ from dolfinx import fem, la
 from petsc4py import PETSc
 
 from coilset.meshes.solid import SolidMesh
+from coilset.model.body.body import Moment
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.iteration import Iteration
@@ -75,11 +77,12 @@ class SolidProblem:
         """Internal forces at the last equilibrium, shape (owned blocks, 3), N."""
         return self.solid.state["reactions"].equilibrium.reshape(-1, 3)
 
-    def step(self, top: Motion, bottom: Motion | None = None) -> tuple[Outcome, int]:
+    def step(self, top: Motion, bottom: Motion | None = None, hours: float = 0.0) -> tuple[Outcome, int]:
         """Move the heads as prescribed and find the equilibrium there; the step is cut if it is not found.
 
         Args:
             top, bottom: Motion from the start; by default the bottom stays.
+            hours: that it takes; 0: no time.
 
         Returns:
             Total Outcome, in which a predictor counts as an iteration, and the number of cuts.
@@ -93,6 +96,7 @@ class SolidProblem:
             lambda done: self.load(*self._between(origin, targets, done)),
             target=str(top),
             place=lambda: f"{self.top.motion}",
+            moment=partial(self._moment, float(self.solid.clock[0]), hours) if hours > 0.0 else None,
         )
         continuation.begin()
         total, cuts = None, 0
@@ -102,6 +106,9 @@ class SolidProblem:
             total, cuts = outcome if total is None else total + outcome, cuts + more
         assert total is not None
         return total, cuts
+
+    def _moment(self, start: float, hours: float, done: float) -> Moment:
+        return Moment(start + done * hours, float(self.solid.clock[1]))
 
     def _between(self, origin: tuple[Motion, Motion], targets: tuple[Motion, Motion], part: float) -> list[Motion]:
         return [a.between(b, min(part, 1.0)) for a, b in zip(origin, targets, strict=True)]

@@ -44,13 +44,13 @@ class AxialProgram:
         self.problem, self.report = problem, report
         self.stations = [Station(0.0, 0.0, 0.0)]
 
-    def go(self, travel: float) -> Station:
-        """Go to a travel in one step.
+    def go(self, travel: float, hours: float = 0.0) -> Station:
+        """Go to a travel in one step, which takes some hours.
 
         Raises:
             SolveError: if there is no equilibrium.
         """
-        outcome, _cuts = self.problem.step(Motion((0.0, 0.0, -travel)))
+        outcome, _cuts = self.problem.step(Motion((0.0, 0.0, -travel)), hours=hours)
         _, top = self.problem.reactions(np.zeros(3))
         station = Station(travel, -top.force[2], top.moment[2], outcome.iterations, outcome.linear_iterations)
         self.stations.append(station)

@@ -1,6 +1,7 @@
 """The solid body, a Body: moving configuration, state of the points, internal forces and tangent."""
 
 import time
+from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
@@ -9,8 +10,10 @@ from dolfinx.fem.petsc import assemble_matrix, create_matrix
 from petsc4py import PETSc
 
 from coilset.meshes.solid import SolidMesh
-from coilset.model.body.body import Body
+from coilset.model.body.body import Body, Moment
 from coilset.model.body.state import State, Where
+from coilset.model.material.creep.law import CreepLaw
+from coilset.model.material.creep.rate import RateLaw
 from coilset.model.solid.configuration import Configuration
 from coilset.model.solid.forms import SolidForms
 from coilset.model.solid.kinematics import push_forward, stretches
@@ -22,8 +25,15 @@ CHUNK = 2048
 class PointLaw(Protocol):
     """A material law at points, as coilset.model.solid.points.MaterialPoints."""
 
+    in_time: CreepLaw | RateLaw | None
+    temperature: float
+
     def initial_state(self, points: int) -> np.ndarray:
         """Rows of unstressed points, shape (points, n_state); stress and back stress come first, 6 entries each."""
+        ...
+
+    def pass_time(self, start: Mapping[str, np.ndarray], end: Mapping[str, np.ndarray]) -> None:
+        """Let increments from now on lead from one state to another, whose `clock`s tell their time."""
         ...
 
     def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
@@ -61,6 +71,8 @@ class Solid(Body):
         self.state = State()
         self._x = self.state.add("x", self.configuration.x.copy(), Where.STATION)
         self._points = self.state.add("point_state", rows, Where.CELL)
+        if points.in_time is not None:
+            self.state.add("clock", points.in_time.clock(0.0, points.temperature), Where.SHARED)
         self.seconds = {"points": 0.0, "assembly": 0.0}
         self._rounding = 0.0
         self.update()
@@ -82,6 +94,9 @@ class Solid(Body):
         began = time.perf_counter()
         np.add(self._x.equilibrium, self.u, out=self._x.trial)
         self.configuration.move(self.x)
+        if "clock" in self.state:
+            clock = self.state["clock"]
+            self.points.pass_time({"clock": clock.equilibrium}, {"clock": clock.trial})
         good = all(self._update_chunk(first) for first in range(0, self.n_cells, CHUNK))
         self.seconds["points"] += time.perf_counter() - began
         return good
@@ -102,6 +117,20 @@ class Solid(Body):
         moduli = self.forms.moduli.x.array.reshape(-1, self.n_points, 6, 6)[cells].reshape(n, 6, 6)
         push_forward(new, C, axes, rotation, log_stretch, stress, moduli, self.symmetric)
         return True
+
+    @property
+    def clock(self) -> np.ndarray:
+        """Hours since the start, temperature (K) and warm hours at the last equilibrium; see PassesTime."""
+        if "clock" in self.state:
+            return self.state["clock"].equilibrium
+        return np.array([0.0, self.points.temperature, 0.0])
+
+    def pass_time(self, middle: Moment, end: Moment) -> None:
+        """Set the clock of the state on trial; see PassesTime."""
+        if self.points.in_time is None:
+            raise ValueError("the material neither creeps nor depends on the rate, so time has no effect on it")
+        start = self.state["clock"].equilibrium
+        self.state["clock"].trial[:] = self.points.in_time.clock(*end, self.points.in_time.clock(*middle, start))
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ σ : δε of the owned cells; see Body."""

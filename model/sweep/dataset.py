@@ -1,6 +1,7 @@
-"""A sweep as one labelled data set: inputs, responses, characteristic and status of each case."""
+"""A sweep as one labelled data set in memory: inputs, responses, characteristic and status of each case."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,52 +14,54 @@ from coilset.model.case.settings import located
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.netcdf import reserve
 from coilset.model.results.records.units import quantity
-from coilset.model.sweep.journal import read_records
+from coilset.model.sweep.journal import Records
+from coilset.model.sweep.keys import as_rod
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import are_numbers
 
+MOST_CASES = 20_000  # in a data set and its figures; all cases of a larger sweep are in its Parquet file
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
 
 
-def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
-    """All cases of a plan, from the journal.
+def collect(plan: Plan, folder: str | Path, most: int = MOST_CASES) -> xr.Dataset:
+    """The cases of a plan, from the journals of its folder.
 
     Args:
         plan: Plan.
-        journal: path of the journal.
+        folder: of the sweep.
+        most: number of cases; of more, so many that are evenly spread over the plan are taken.
 
     Returns:
         xarray.Dataset with the dimensions `case` and `step`. A case that has not been run has the status "missing"; a
         case that failed has no responses, but its reason and its characteristic so far. Characteristics shorter than
-        the longest are filled with NaN. A response with the name of an input gets the suffix `_found`.
+        the longest are filled with NaN. A response with the name of an input gets the suffix `_found`; what rods
+        computed of a sweep of uniform rods, the prefix `rod_`.
     """
+    n = min(len(plan), most)
+    chosen = [place * len(plan) // n for place in range(n)]
     places: dict[str, list[int]] = {}
-    for place, key in enumerate(plan.keys):
-        places.setdefault(key, []).append(place)
-    records = {record["key"]: record for record in read_records(journal) if record["key"] in places}
-    n = len(plan)
+    for place, case in enumerate(chosen):
+        places.setdefault(plan.keys[case], []).append(place)
+        if case < plan.spec.rods:
+            places.setdefault(as_rod(plan.keys[case]), []).append(place)
     status, reason = np.full(n, "missing", dtype=object), np.full(n, "", dtype=object)
     warnings = np.full(n, "", dtype=object)
     seconds = np.full(n, np.nan)
     responses: dict[str, np.ndarray] = {}
-    longest = max((len(record["steps"].get("force_N", ())) for record in records.values()), default=0)
-    curves = {name: np.full((n, longest), np.nan) for name in CURVE}
-    for key, record in records.items():
-        at = places[key]
-        status[at], reason[at], seconds[at] = record["status"], record["reason"], record["seconds"]
-        warnings[at] = ", ".join(warning["name"] for warning in record["summary"].get("warnings", ()))
-        for name, curve in curves.items():
-            column = np.array(record["steps"].get(name, ()), dtype=float)
-            curve[at, : len(column)] = column
-        if record["status"] == "done":
-            for name, value in record["summary"].items():
-                if value is None or (isinstance(value, (int, float)) and not isinstance(value, bool)):
-                    name = f"{name}_found" if name in plan.names else name
-                    column = responses.setdefault(name, np.full(n, np.nan))
-                    column[at] = np.nan if value is None else value
+    curves: dict[str, dict[int, np.ndarray]] = {name: {} for name in CURVE}
+    for record in Records(folder, places):
+        at = places[record["key"]]
+        for name, column in record["steps"].items():  # none of a uniform rod
+            if name in curves:
+                curves[name].update(dict.fromkeys(at, np.array(column, dtype=float)))
+        for name, value in responses_of(plan, record).items():
+            responses.setdefault(name, np.full(n, np.nan))[at] = value
+        if not corrects(plan, record):
+            status[at], reason[at], seconds[at] = record["status"], record["reason"], record["seconds"]
+            warnings[at] = words_of_warnings(record)
     data: dict[str, Any] = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
     data |= {
-        f"curve_{name}": (("case", "step"), curve, _attributes(*quantity(name)) | {"units": CURVE[name]})
+        f"curve_{name}": (("case", "step"), _filled(curve, n), _attributes(*quantity(name)) | {"units": CURVE[name]})
         for name, curve in curves.items()
     }
     data |= {
@@ -67,17 +70,18 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
         "warnings": ("case", warnings),
         "seconds": ("case", seconds, {"units": "s"}),
     }
-    coordinates: dict[str, Any] = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
+    coordinates: dict[str, Any] = {name: ("case", *_input(plan, k, chosen)) for k, name in enumerate(plan.names)}
     attributes: dict[str, Any] = {
         "title": f"sweep {plan.path.stem}",
         "versions": versions(),
         "design": plan.spec.design,
         "inputs": plan.names,
+        "cases": len(plan),
     }
     attributes |= _recipe(plan)
     if plan.spec.samples is not None:
         attributes |= {"samples": plan.spec.samples, "seed": plan.spec.seed}
-    return xr.Dataset(data, coordinates | {"key": ("case", plan.keys)}, attributes)
+    return xr.Dataset(data, coordinates | {"key": ("case", [plan.keys[case] for case in chosen])}, attributes)
 
 
 def _recipe(plan: Plan) -> dict[str, str]:
@@ -88,7 +92,7 @@ def _recipe(plan: Plan) -> dict[str, str]:
     choices = {
         name: {str(row[k]): row[k] for row in plan.rows}
         for k, name in enumerate(plan.names)
-        if not are_numbers([row[k] for row in plan.rows])
+        if not plan.rows.is_numeric(k)
     }
     entries = {name: plan.entries(name) for name in plan.names}
     return {name: json.dumps(value) for name, value in (("base", base), ("entries", entries), ("choices", choices))}
@@ -98,9 +102,39 @@ def _attributes(words: str, unit: str) -> dict[str, str]:
     return {"long_name": words, "units": unit}
 
 
-def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
-    """Values of an input for all cases, words where they are not all numbers, and its attributes."""
-    vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
+def responses_of(plan: Plan, record: dict[str, Any]) -> dict[str, float]:
+    """Numbers of the summary of a case that is done, by their names in the data set."""
+    if record["status"] != "done":
+        return {}
+    prefix = "rod_" if corrects(plan, record) else ""
+    return {
+        f"{prefix}{name}" if prefix or name not in plan.names else f"{name}_found": np.nan if value is None else value
+        for name, value in record["summary"].items()
+        if value is None or (isinstance(value, (int, float)) and not isinstance(value, bool))
+    }
+
+
+def corrects(plan: Plan, record: dict[str, Any]) -> bool:
+    """Whether it is a rod's record of a sweep of uniform rods."""
+    return plan.spec.model == "uniform_rod" and as_rod(record["key"]) == record["key"]
+
+
+def words_of_warnings(record: dict[str, Any]) -> str:
+    """Names of a case's warnings."""
+    return ", ".join(warning["name"] for warning in record["summary"].get("warnings", ()))
+
+
+def _filled(curves: dict[int, np.ndarray], n: int) -> np.ndarray:
+    """Characteristics of all cases, shape (n, longest), filled with NaN."""
+    filled = np.full((n, max((len(curve) for curve in curves.values()), default=0)), np.nan)
+    for place, curve in curves.items():
+        filled[place, : len(curve)] = curve
+    return filled
+
+
+def _input(plan: Plan, k: int, chosen: Sequence[int]) -> tuple[Any, dict[str, str]]:
+    """Values of an input for some cases, words where they are not all numbers, and its attributes."""
+    vary, values = plan.spec.vary[plan.names[k]], [plan.rows[case][k] for case in chosen]
     words = vary.label or _plain_words(plan)[k]
     if not are_numbers(values):
         return np.array([str(value) for value in values], dtype=object), _attributes(words, vary.unit or "")

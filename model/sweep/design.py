@@ -7,12 +7,11 @@ import numpy as np
 from scipy.stats import qmc
 
 from coilset.model.base.errors import InputError
+from coilset.model.sweep.packed import Row, Rows
 from coilset.model.sweep.spec import SweepSpec
 
-Row = tuple[Any, ...]  # the inputs of a case
 
-
-def rows(spec: SweepSpec, base: Any) -> list[Row]:
+def rows(spec: SweepSpec, base: Any) -> Rows:
     """The inputs of all cases.
 
     Args:
@@ -20,16 +19,16 @@ def rows(spec: SweepSpec, base: Any) -> list[Row]:
         base: value of each input in the base case, needed by one_at_a_time only, a dict.
 
     Returns:
-        List of tuples, one per case, the values in the order of `spec.vary`.
+        One row per case, the values in the order of `spec.vary`.
 
     Raises:
         InputError: an input that the design cannot use.
     """
     if spec.design in ("grid", "together", "one_at_a_time"):
         columns = [_grid(name, vary) for name, vary in spec.vary.items()]
-        return _combine(spec, columns, base)
+        return Rows.of(_combine(spec, columns, base))
     cube = unit_cube(spec)
-    return list(zip(*(vary.at(cube[:, k]) for k, vary in enumerate(spec.vary.values())), strict=True))
+    return Rows([vary.at(cube[:, k]) for k, vary in enumerate(spec.vary.values())])
 
 
 def _grid(name: str, vary: Any) -> list[Any]:

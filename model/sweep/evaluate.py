@@ -15,12 +15,22 @@ from coilset.model.base.errors import CoilsetError, InputError, SolveError
 from coilset.model.case import Case, check
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
+from coilset.model.results.records.summary_entries import NUMBERS
 from coilset.model.run.analysis import Analysis
-from coilset.model.sweep.keys import Keys
+from coilset.model.standards.wires.law import case_law
+from coilset.model.sweep.engines.pool import Record, Task
+from coilset.model.sweep.keys import Keys, Model
+from coilset.model.uniform.estimate import estimate
 
 
 def evaluate(
-    data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: float | None = None, key: str | None = None
+    data: dict[str, Any],
+    comm: MPI.Comm,
+    file: str = "",
+    time_limit: float | None = None,
+    key: str | None = None,
+    model: Model = "rod",
+    keys: Keys | None = None,
 ) -> dict[str, Any]:
     """Run a case; errors are recorded instead of raised.
 
@@ -29,20 +39,27 @@ def evaluate(
         comm: communicator of the ranks that solve it.
         file: the base case's file, from whose folder other files count.
         time_limit: seconds after which it is stopped at the end of its step.
-        key: of the case when the sweep was read; it fails if it has another one now, since a file has changed.
+        key: of the task when the sweep was read; it fails if it has another one now, since a file has changed.
+        model: `rod`, or `uniform_rod` for the estimate by a coil whose state is the same all along the wire.
+        keys: of cases evaluated together, for which a file is read once.
 
     Returns:
-        The record, plain data: `status` ("done" or "failed"), `reason`, `seconds`, `summary`, `steps` (columns of the
-        history). A case that fails midway keeps its results so far.
+        The record, plain data: `key`, `status` ("done" or "failed"), `reason`, `seconds`, `summary`, `steps` (columns
+        of the history; none of the uniform rod). A case that fails midway keeps its results so far.
     """
-    began = time.perf_counter()
+    began, keys = time.perf_counter(), keys or Keys()
     reason, analysis = "", None
+    record: dict[str, Any] = {"key": key, "status": "failed", "reason": "", "summary": {}, "steps": {}}
     try:
         case: Case = check(data, file)
-        analysis = Analysis(case, comm, detailed=False)
-        if key is not None and Keys()(case) != key:  # as it is now that the files have been read
+        if model == "rod":
+            analysis = Analysis(case, comm, detailed=False)
+        else:
+            record["summary"] = estimated(case, keys)
+        if key is not None and keys(case, model) != key:  # as it is now that the files have been read
             raise InputError("a file that this case names has changed since the sweep was read; run the sweep again")
-        analysis.run(watch(comm, began, time_limit))
+        if analysis is not None:
+            analysis.run(watch(comm, began, time_limit))
     except CoilsetError as error:
         reason = str(error)
     except Exception as error:
@@ -51,7 +68,7 @@ def evaluate(
             comm.Abort(1)
         reason = f"{type(error).__name__}: {error}"
     result = getattr(analysis, "result", None)
-    record: dict[str, Any] = {"status": "failed" if reason else "done", "reason": reason, "summary": {}, "steps": {}}
+    record |= {"status": "failed" if reason else "done", "reason": reason}
     if analysis is not None and result is not None and result.snapshots and comm.rank == 0:
         record["summary"] = {key: plain(value) for key, value in summarise(analysis.setup, result).items()}
         record["steps"] = {
@@ -62,15 +79,24 @@ def evaluate(
     return {**record, "seconds": time.perf_counter() - began}
 
 
-def evaluate_in_worker(**task: Any) -> dict[str, Any]:
-    """`evaluate` in a process that does nothing else, the faster the more cases it has run.
+def estimated(case: Case, keys: Keys) -> dict[str, Any]:
+    """Entries of the summary as the uniform rod estimates them."""
+    spring = case.spring.build()
+    law = keys.law(case.material) if isinstance(case.material, str) else case_law(case, spring)
+    numbers = estimate(case, spring, law).numbers
+    return {name: plain(value) for name, value in numbers.items() if name in NUMBERS}
 
-    What is left after a case stays until the end: libraries, compiled functions. Later searches for garbage, which
+
+def evaluate_in_worker(tasks: list[Task], comm: MPI.Comm) -> list[Record]:
+    """`evaluate` each task of a message in a process that does nothing else, the faster the more it has run.
+
+    What is left after a message stays until the end: libraries, compiled functions. Later searches for garbage, which
     would take 12 ms longer each, skip it.
     """
-    record = evaluate(**task)
+    keys = Keys()
+    records = [evaluate(comm=comm, keys=keys, **task) for task in tasks]
     gc.freeze()
-    return record
+    return records
 
 
 def plain(value: Any) -> Any:

@@ -1,14 +1,17 @@
-"""The journal of a sweep: one JSON line for each finished case, written as soon as it ends."""
+"""The journals of a sweep: one JSON line for each finished case, written as soon as it ends."""
 
 import fcntl
 import json
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from coilset.model.base.errors import CoilsetError, InputError
+from coilset.model.sweep.keys import KEY_LENGTH
 
 SYNC_SECONDS = 1.0
 
@@ -18,19 +21,21 @@ class Journal:
 
     Args:
         path: the file, created if necessary.
+        locked: refuse a second writer by a lock, which file systems of clusters may not have.
 
     Raises:
         InputError: if it cannot be opened, or another process writes to it.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, locked: bool = True) -> None:
         self.path, self._synced = Path(path), time.monotonic()
         try:
             self._file = open(path, "ab", buffering=0)  # noqa: SIM115 (held open, and locked, until close)
         except OSError as error:
             raise InputError(f"cannot be written: {error.strerror}", "", path) from None
         try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if locked:
+                fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:
             self._file.close()
             raise InputError("another sweep is writing to this folder", "", path) from None
@@ -85,14 +90,17 @@ def read_records(path: str | Path) -> Iterator[dict[str, Any]]:
     Raises:
         InputError: for a line that is not a record, with its number.
     """
-    path = Path(path)
+    return (record for _start, record in _lines(Path(path)))
+
+
+def _lines(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Where each record of a journal begins, in bytes, and the record."""
     if not path.exists():
         return
-    left = whole_length(path)
+    start, length = 0, whole_length(path)
     with open(path, "rb") as file:
         for number, line in enumerate(file, 1):
-            left -= len(line)
-            if left < 0:
+            if start + len(line) > length:
                 return
             try:
                 record = json.loads(line)
@@ -103,4 +111,55 @@ def read_records(path: str | Path) -> Iterator[dict[str, Any]]:
                     f"line {number}",
                     path,
                 ) from None
-            yield record
+            yield start, record
+            start += len(line)
+
+
+class Records:
+    """The finished cases of a folder: of several records of a case, in one journal or another, the last that is done.
+
+    Their places are kept, not the records, so that millions of them can be read one after the other.
+
+    Args:
+        folder: of the sweep.
+        keys: of the tasks that count, in any order.
+
+    Attributes:
+        found: for each of the distinct keys, in ascending order, whether there is a record, shape (m,).
+        keys: these keys, an array of bytes, shape (m,).
+
+    Raises:
+        InputError: for a line that is not a record, with its number.
+    """
+
+    def __init__(self, folder: str | Path, keys: Iterable[str]) -> None:
+        self.keys = np.unique(np.fromiter((key.encode() for key in keys), dtype=f"S{KEY_LENGTH}"))
+        self.paths = journals(folder)
+        self._file = np.full(len(self.keys), -1, np.int32)
+        self._start = np.zeros(len(self.keys), np.int64)
+        done = np.zeros(len(self.keys), bool)
+        for number, path in enumerate(self.paths):
+            for start, record in _lines(path):
+                at = self._at(record["key"])
+                if at is not None and not (done[at] and record["status"] != "done"):
+                    self._file[at], self._start[at] = number, start
+                    done[at] = record["status"] == "done"
+        self.found = self._file >= 0
+
+    def _at(self, key: str) -> int | None:
+        at = int(np.searchsorted(self.keys, key.encode()))
+        return at if at < len(self.keys) and self.keys[at] == key.encode() else None
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        """The records, journal by journal in the order in which they were written."""
+        for number, path in enumerate(self.paths):
+            starts = np.sort(self._start[self._file == number])
+            with open(path, "rb") as file:
+                for start in starts:
+                    file.seek(start)
+                    yield json.loads(file.readline())
+
+
+def journals(folder: str | Path) -> list[Path]:
+    """All journals of a folder: of the whole sweep, of its shards."""
+    return sorted(Path(folder).glob("journal*.jsonl"))

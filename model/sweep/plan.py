@@ -1,7 +1,7 @@
 """The plan of a sweep: its cases as checked data, and a key for each that identifies its results."""
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +10,10 @@ from coilset.model.base.errors import InputError, naming
 from coilset.model.base.yaml import read_data
 from coilset.model.case import Case, check, read_case_data
 from coilset.model.case.settings import located, put
-from coilset.model.sweep.design import Row, rows
-from coilset.model.sweep.keys import Keys
+from coilset.model.sweep.design import rows
+from coilset.model.sweep.engines.pool import Task
+from coilset.model.sweep.keys import Keys, Model, as_rod
+from coilset.model.sweep.packed import Row, Strings
 from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.spec import SweepSpec
 
@@ -47,8 +49,8 @@ class Plan:
             for entry, value in self.spec.change.items():
                 put(self.base, entry, self._located(entry, value), f"change.{entry}")
             self.base_values = {name: self._base_value(name) for name in self.names}
-            self.rows: list[Row] = rows(self.spec, self.base_values)
-            self.keys = list(self._check_cases())
+            self.rows = rows(self.spec, self.base_values)
+            self.keys = Strings(self._check_cases())
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -57,9 +59,24 @@ class Plan:
         """Paths of the entries that an input sets."""
         return self.spec.vary[name].entries or [name]
 
-    def task(self, row: Row) -> dict[str, Any]:
-        """The task of running a case: its raw data, the base case's file, and the time limit."""
-        return {"data": self.data(row), "file": str(self.case_path), "time_limit": self.spec.time_limit}
+    def tasks(self) -> Iterator[tuple[Row, str, Model]]:
+        """Inputs, key and model of everything to compute: each case by the sweep's model, `rods` of them by rods."""
+        for row, key in zip(self.rows, self.keys, strict=True):
+            yield row, key, self.spec.model
+        for row, key in zip(self.rows[: self.spec.rods], self.keys, strict=False):
+            yield row, as_rod(key), "rod"
+
+    def add(self, cases: Iterable[tuple[Row, str]]) -> None:
+        """Append cases that are not of the design: inputs and keys."""
+        for row, key in cases:
+            if key not in self.keys:
+                self.rows.added.append(row)
+                self.keys.add(key)
+
+    def task(self, row: Row, key: str, model: Model = "rod") -> Task:
+        """The task of running a case: arguments of `evaluate`."""
+        file, limit = str(self.case_path), self.spec.time_limit
+        return {"data": self.data(row), "file": file, "time_limit": limit, "key": key, "model": model}
 
     def data(self, row: Row) -> dict[str, Any]:
         """The raw data of one case, as in a case file."""
@@ -96,5 +113,5 @@ class Plan:
                 raise InputError(f"{error.problem} (in the case {inputs})", error.place) from None
             self.notices = self.notices or list(case.notices())
             rehearsal.try_case(row, case)
-            yield keys(case)
+            yield keys(case, self.spec.model)
         rehearsal.conclude()

@@ -1,71 +1,108 @@
 """Run the missing cases of a plan, and record each as it ends."""
 
-from collections.abc import Callable, Iterable, Iterator
+import time
+from collections.abc import Callable, Collection, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
-from typing import Any
 
-from coilset.model.sweep.design import Row
-from coilset.model.sweep.journal import Journal, read_records
+from coilset.model.sweep.engines.pool import Pool, Record, Task
+from coilset.model.sweep.journal import Journal, journals, read_records
+from coilset.model.sweep.keys import Model
+from coilset.model.sweep.packed import Row
 from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.pools import Pool
+from coilset.model.sweep.shards import Shard
 
-AHEAD = 2  # tasks submitted per worker, so that none is idle
-
-
-def finished(path: str | Path, retry: bool) -> set[str]:
-    """Keys of the cases in a journal, without the failed ones if they are to be rerun."""
-    return {record["key"] for record in read_records(path) if not (retry and record["status"] == "failed")}
+AHEAD = 2  # messages submitted per worker, so that none is idle
+MESSAGE_SECONDS = 0.5  # of work in one message: short cases share one, which costs about 0.4 ms
+MOST_TASKS = 500  # of one message
 
 
-def missing(plan: Plan, done: Iterable[str]) -> Iterator[tuple[Row, str]]:
-    """Rows and keys of the cases not in `done`, each once."""
+def finished(folder: str | Path, retry: bool) -> set[str]:
+    """Keys of the cases in the journals of a folder, without the failed ones if they are to be rerun."""
+    done = (record for path in journals(folder) for record in read_records(path))
+    return {record["key"] for record in done if not (retry and record["status"] == "failed")}
+
+
+def missing(plan: Plan, done: Collection[str], shard: Shard | None = None) -> Iterator[tuple[Row, str, Model]]:
+    """Inputs, key and model of what is not in `done`, each once; of one shard, if it is given."""
     seen = set(done)
-    for row, key in zip(plan.rows, plan.keys, strict=True):
-        if key not in seen:
+    for number, (row, key, model) in enumerate(plan.tasks()):
+        if key not in seen and (shard is None or shard.has(number)):
             seen.add(key)
-            yield row, key
+            yield row, key, model
+
+
+@dataclass
+class Limits:
+    """When a sweep ends although cases are missing.
+
+    Attributes:
+        until: seconds from `began` by which it ends, as far as the cases so far allow to foresee.
+        budget: seconds of all cases together, on one core each, after which no case is started.
+        began: time.monotonic() of the start.
+    """
+
+    until: float = float("inf")
+    budget: float = float("inf")
+    began: float = 0.0
+
+    def reached(self, used: float, longest: float) -> bool:
+        """Whether to start no further message, from the seconds used by all cases and by the longest message."""
+        return used >= self.budget or time.monotonic() - self.began + AHEAD * longest >= self.until
 
 
 def run(
     plan: Plan,
-    todo: Iterable[tuple[Row, str]],
+    todo: Iterable[tuple[Row, str, Model]],
     pool: Pool,
     journal: Journal,
-    report: Callable[[dict[str, Any]], object] = lambda record: None,
+    report: Callable[[Record], object] = lambda record: None,
+    limits: Limits | None = None,
 ) -> None:
     """Run the cases of `todo`.
 
     Args:
         plan: Plan.
-        todo: rows and keys, see `missing`.
+        todo: see `missing`.
         pool: where they run.
         journal: Journal.
         report: called with each record after it is written.
+        limits: when it ends although cases are missing.
     """
-    waiting: dict[Future[dict[str, Any]], str] = {}
+    tasks = (plan.task(*case) for case in todo)
+    waiting: set[Future[list[Record]]] = set()
     try:
-        _keep_busy(plan, iter(todo), pool, journal, report, waiting)
+        _keep_busy(tasks, pool, journal, report, limits or Limits(), waiting)
     finally:
         for future in waiting:
             future.cancel()
 
 
 def _keep_busy(
-    plan: Plan,
-    todo: Iterator[tuple[Row, str]],
+    tasks: Iterator[Task],
     pool: Pool,
     journal: Journal,
-    report: Callable[[dict[str, Any]], object],
-    waiting: dict[Future[dict[str, Any]], str],
+    report: Callable[[Record], object],
+    limits: Limits,
+    waiting: set[Future[list[Record]]],
 ) -> None:
+    used, count, longest = 0.0, 0, 0.0
     while True:
-        while len(waiting) < AHEAD * pool.workers and (case := next(todo, None)) is not None:
-            row, key = case
-            waiting[pool.submit(plan.task(row) | {"key": key})] = key
+        size = 1 if not count else min(max(int(MESSAGE_SECONDS * count / max(used, 1e-9)), 1), MOST_TASKS)
+        while len(waiting) < AHEAD * pool.workers and not limits.reached(used, longest):
+            message = list(islice(tasks, size))
+            if not message:
+                break
+            waiting.add(pool.submit(message))
         if not waiting:
             return
         for future in wait(waiting, return_when=FIRST_COMPLETED).done:
-            record = {"key": waiting.pop(future), **future.result()}
-            journal.append(record)
-            report(record)
+            waiting.remove(future)
+            records = future.result()
+            for record in records:
+                journal.append(record)
+                report(record)
+            seconds = sum(record["seconds"] or 0.0 for record in records)
+            used, count, longest = used + seconds, count + len(records), max(longest, seconds)

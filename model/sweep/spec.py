@@ -76,13 +76,13 @@ class Range(Input):
         """`count` values, including both ends."""
         if self.count is None:
             raise ValueError("a grid needs 'count', the number of values in the range")
-        return self.at(np.linspace(0.0, 1.0, self.count))
+        return self.at(np.linspace(0.0, 1.0, self.count)).tolist()
 
-    def at(self, q: Sequence[float] | np.ndarray) -> list[Any]:
+    def at(self, q: Sequence[float] | np.ndarray) -> np.ndarray:
         """Values at the probabilities `q`."""
         if self.spacing == "log":
-            return (self.start * (self.stop / self.start) ** np.asarray(q)).tolist()
-        return (self.start + (self.stop - self.start) * np.asarray(q)).tolist()
+            return self.start * (self.stop / self.start) ** np.asarray(q)
+        return self.start + (self.stop - self.start) * np.asarray(q)
 
 
 class Normal(Input):
@@ -100,10 +100,10 @@ class Normal(Input):
         """A scatter has no grid."""
         raise ValueError("a scatter has no grid; use the design latin_hypercube, sobol or sobol_indices")
 
-    def at(self, q: Sequence[float] | np.ndarray) -> list[Any]:
+    def at(self, q: Sequence[float] | np.ndarray) -> np.ndarray:
         """Values at the probabilities `q`, the quantiles of the truncated normal distribution."""
         scatter = stats.truncnorm(-self.sigmas, self.sigmas, loc=self.mean, scale=self.tolerance / self.sigmas)
-        return scatter.ppf(q).tolist()
+        return scatter.ppf(q)
 
 
 def _kind(value: Any) -> str:
@@ -219,6 +219,18 @@ class SweepSpec(Strict):
         Whole | None, Field(ge=2, le=100_000_000, description="number of cases of a sampling design")
     ] = None
     seed: Annotated[Whole, Field(ge=0, description="seed of the random numbers of a sampling design")] = 0
+    model: Annotated[
+        Literal["rod", "uniform_rod"],
+        Field(
+            description="what computes each case: the rod, or in milliseconds a coil whose state is the same along it"
+        ),
+    ] = "rod"
+    rods: Annotated[
+        Whole,
+        Field(
+            ge=0, description="with `model: uniform_rod`: number of cases, the first ones, that the rod computes too"
+        ),
+    ] = 0
     time_limit: Annotated[float | None, Unit("s"), Field(gt=0, description="seconds after which a case is stopped")] = (
         None
     )
@@ -232,6 +244,8 @@ class SweepSpec(Strict):
             raise ValueError(f"the design {self.design} needs 'samples'")
         if self.design in GRIDS and self.samples is not None:
             raise ValueError(f"the design {self.design} has no 'samples': its number of cases follows from the values")
+        if self.rods and (self.model == "rod" or self.design not in SAMPLES):
+            raise ValueError("'rods' needs 'model: uniform_rod', whose estimates they correct, and a sampling design")
         if self.design in ("sobol", "sobol_indices") and self.samples is not None and self.samples & (self.samples - 1):
             raise ValueError(f"the design {self.design} needs a power of 2 as 'samples', not {self.samples}")
         return self

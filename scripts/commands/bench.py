@@ -3,6 +3,7 @@
 import json
 import os
 import platform
+import shutil
 import sys
 import tempfile
 import time
@@ -13,12 +14,13 @@ from typing import Any
 
 from rich.table import Table
 
-from coilset.model.results.files.folder import make, whole
+from coilset.model.results.files.folder import clear, make, whole
 from coilset.model.runtime.processes import folder_of_mpirun, mpi_settings, mpirun, usable_cores
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.spring_costs import comparison, cost_table
 from coilset.verification.benchmarks.everyday import MEASURED, everyday, launchers, of_a_new_command
 from coilset.verification.benchmarks.measure import STAGES, per_element
+from coilset.verification.benchmarks.million import million
 from coilset.verification.benchmarks.process import read_json
 from coilset.verification.benchmarks.springs import press_springs
 
@@ -94,6 +96,27 @@ def bench_springs(out: str, count: int, against: str | None = None) -> None:
     if len(starts) > 1:
         console.print(comparison(rows))
     console.print(f"{time.perf_counter() - began:.0f} s; springs.json in {folder}{os.sep}")
+
+
+def bench_million(out: str, fraction: float) -> None:
+    """Run a sweep of a fraction of a million cases; see `coilset bench --help`.
+
+    Raises:
+        CoilsetError: a command failed, or a case is missing.
+    """
+    environment, console, folder = dict(os.environ), Console(), Path(out)
+    make(folder)
+    clear(folder, ("million.yaml", "million.json"))
+    shutil.rmtree(folder / "million", ignore_errors=True)
+    found = million(folder, fraction, environment, console.say)
+    each = 1e3 * found.run_seconds / (found.uniform + found.rods)
+    console.print(
+        f"{found.uniform:,} uniform rods and {found.rods:,} rods in {found.run_seconds:,.0f} s, {each:.2f} ms a case, "
+        f"killed three times: {found.repeated} cases computed twice, {found.failed} failed\n"
+        f"collected again in {found.collect_seconds:,.0f} s; memory of the leading process {found.run_GiB:.2f} GiB, of "
+        f"collecting {found.collect_GiB:.2f} GiB\n"
+        f"on disk {found.journal_bytes:,.0f} bytes a case in the journal, {found.parquet_bytes:,.0f} in Parquet"
+    )
 
 
 def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int = 1) -> dict[str, Any]:

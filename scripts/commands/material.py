@@ -52,26 +52,23 @@ def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
 def run_program(
     material: str = MATERIAL,
     program: str = typer.Argument(help="program file (YAML): targets of strain and stress"),
-    integrator: str = typer.Option("return_mapping", help="return_mapping, or heun as in the thesis"),
     spin: bool = typer.Option(False, help="include the spin terms of the rod's form (5.2.33)"),
     out: str = OUT,
     force: bool = FORCE,
 ) -> None:
     """Drive one material point through a program of strain and stress, and draw the result."""
-    from coilset.model.material import library, points, programs
+    from coilset.model.material import library, programs
     from coilset.model.material.identification import figures
     from coilset.model.results.files.folder import make
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
-    if integrator not in points.INTEGRATORS:
-        raise InputError(f"'{integrator}' is none of {', '.join(points.INTEGRATORS)}", "--integrator")
     law, steps = library.load(material, spin=spin), programs.read(program)
     name = Path(program).stem
     table, picture = _free(_folder(out, law.name), force, f"{name}.csv", f"{name}.png")
     console = Console()
     with naming(program):
-        history = programs.run(law, steps, integrator)
+        history = programs.run(law, steps)
     console.print(_ends(steps, history))
     make(table.parent)
     _write_csv(table, history)

@@ -5,6 +5,8 @@ import signal
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass, field
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,10 +15,13 @@ from rich.table import Table
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.results.files.folder import clear, making, refuse_obstacles
-from coilset.model.sweep.journal import Journal
+from coilset.model.sweep import multifidelity
+from coilset.model.sweep.engines.pool import Pool
+from coilset.model.sweep.engines.processes import Workers
+from coilset.model.sweep.journal import Journal, journals, read_records
 from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.pools import Pool, Workers
-from coilset.model.sweep.run import finished, missing, run
+from coilset.model.sweep.run import Limits, finished, missing, run
+from coilset.model.sweep.shards import Shard
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.log import only_run
 from coilset.scripts.terminal.target import results_folder
@@ -28,17 +33,31 @@ REPORT_SECONDS = 30.0  # seconds between progress lines without a terminal
 SHOWN_FAILURES = 5
 
 
-def sweep(
-    sweep_file: str,
-    out: str | None,
-    force: bool,
-    resume: bool,
-    retry: bool,
-    workers: Workers,
-    ranks_per_case: int,
-    pictures: bool,
-) -> None:
-    """Run a sweep, by the Workers if there is one rank only; see `coilset sweep --help`.
+@dataclass(frozen=True)
+class Options:
+    """How a sweep is run; see `coilset sweep --help`."""
+
+    force: bool = False
+    resume: bool = False
+    retry: bool = False
+    collect: bool = False
+    shard: Shard = field(default_factory=Shard)
+    until: float = inf  # seconds from the start of the command
+    budget: float = inf  # seconds of all cases together
+    engine: str | None = None
+    scheduler: str | None = None
+    jobs: int = 1
+    ranks_per_case: int = 1
+    pictures: bool = True
+
+    @property
+    def continues(self) -> bool:
+        """Whether cases that are there are kept."""
+        return self.resume or self.retry or self.collect or self.shard.count > 1
+
+
+def sweep(sweep_file: str, out: str | None, workers: Workers, options: Options) -> None:
+    """Run a sweep, by the Workers if it has no other engine.
 
     Raises:
         InputError: before anything is run, if a file is wrong or the folder already holds a sweep.
@@ -54,14 +73,15 @@ def sweep(
     console = Console()
     interrupted = False
     with ExitStack() as held:
-        plan = on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry, held))
+        plan = on_first_rank(comm, lambda: _prepare(sweep_file, folder, options, held))
         try:
-            with _pool(comm, workers, ranks_per_case, folder) as pool:
-                if pool is not None and plan is not None:
-                    _lead(plan, folder, retry, pool, console)
+            if not options.collect:
+                with _pool(comm, workers, options, folder) as pool:
+                    if pool is not None and plan is not None:
+                        _lead(plan, folder, options, pool, console)
         except KeyboardInterrupt:
             interrupted = True
-        failed = comm.bcast(0 if plan is None else _conclude(plan, folder, pictures, console))
+        failed = comm.bcast(0 if plan is None else _conclude(plan, folder, options, console))
     if interrupted:
         console.print("interrupted; run the same command with --resume to continue")
         raise KeyboardInterrupt
@@ -69,48 +89,56 @@ def sweep(
         raise SolveError(f"{failed} case(s) failed; their reasons are in the journal, --retry runs them again")
 
 
-def _prepare(sweep_file: str, out: Path, force: bool, resume: bool, held: ExitStack) -> Plan:
-    """The plan of a sweep, whose folder is `held` for it from now on."""
-    if force and resume:
-        raise InputError("discards what --resume and --retry continue; give one of them", "--overwrite")
-    refuse_obstacles(out, ["journal.jsonl", "sweep.nc", "workers.log"])
+def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> Plan:
+    """The plan of a sweep, whose folder, or shard in it, is `held` for it from now on."""
+    if options.force and options.continues:
+        raise InputError("discards what other options keep; give one of them", "--overwrite")
+    shard = options.shard
+    refuse_obstacles(out, [shard.journal, "sweep.nc", "sweep.parquet", "workers.log"])
     plan = Plan(sweep_file)
-    journal = out / "journal.jsonl"
-    if journal.exists() and not (force or resume):
+    if not (options.force or options.continues) and journals(out):
         raise InputError("holds a sweep; use --resume to finish it, or --overwrite to overwrite it", "--out", out)
     with making(out):
         out.mkdir(parents=True, exist_ok=True)
-    held.enter_context(only_run(out))
-    if force:
-        clear(out, ("sweep.nc", "report.html", journal.name))
+    held.enter_context(only_run(out) if shard.count == 1 else shard.claimed(out))
+    if options.force:
+        clear(out, ("sweep.nc", "sweep.parquet", "report.html", *(path.name for path in journals(out))))
     return plan
 
 
 @contextmanager
-def _pool(comm: "MPI.Comm", workers: Workers, ranks_per_case: int, out: Path) -> Iterator[Pool | None]:
-    if comm.size > 1:
-        from coilset.model.sweep.mpi_pool import mpi_pool
+def _pool(comm: "MPI.Comm", workers: Workers, options: Options, out: Path) -> Iterator[Pool | None]:
+    if options.engine == "dask":
+        from coilset.model.sweep.engines.dask import dask_pool
 
-        with mpi_pool(comm, ranks_per_case) as pool:
+        with dask_pool(options.scheduler, options.jobs) as pool:
+            yield pool
+    elif comm.size > 1:
+        from coilset.model.sweep.engines.mpi import mpi_pool
+
+        with mpi_pool(comm, options.ranks_per_case) as pool:
             yield pool
     else:
         with workers.pool(out / "workers.log") as pool:
             yield pool
 
 
-def _lead(plan: Plan, out: Path, retry: bool, pool: Pool, console: Console) -> None:
+def _lead(plan: Plan, out: Path, options: Options, pool: Pool, console: Console) -> None:
     """Run the missing cases, with a progress bar."""
     signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))  # a batch system's signal at the end of a job
-    path = out / "journal.jsonl"
-    with closing(Journal(path)) as journal:
-        todo = list(missing(plan, finished(path, retry)))
-        there = len(set(plan.keys)) - len(todo)
+    shard, limits = options.shard, Limits(options.until, options.budget, time.monotonic())
+    done = finished(out, options.retry)
+    with closing(Journal(out / shard.journal, locked=shard.count == 1)) as journal:
+        total, left = (sum(1 for _case in missing(plan, keys, shard)) for keys in ((), done))
         for notice in plan.notices:
             console.warn(notice)
-        console.say(f"{plan.path.name}: {len(plan)} cases, {there} done already, {pool.workers} at a time")
-        progress = Bar(len(todo), console)
+        share = f", shard {shard.number} of {shard.count}" if shard.count > 1 else ""
+        console.say(f"{plan.path.name}{share}: {total} cases, {total - left} done already, {pool.workers} at a time")
+        progress = Bar(left, console)
         with progress.bar:
-            run(plan, todo, pool, journal, progress.report)
+            run(plan, missing(plan, done, shard), pool, journal, progress.report, limits)
+        if progress.done < left:
+            console.print(f"stopped at its limit with {left - progress.done} cases left; --resume continues")
 
 
 class Bar:
@@ -146,15 +174,24 @@ class Bar:
             self.console.print(f"{self.done}/{self.total} cases, {speed:.1f} a minute, {left} {failed}")
 
 
-def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
+def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     """Data set, figures and a summary in words; returns the number of failed cases."""
-    from coilset.model.sweep import dataset  # not before the cases run: xarray and matplotlib take half a second
+    from coilset.model.sweep import dataset, parquet  # after the cases: xarray and matplotlib take half a second
     from coilset.model.sweep.figures.figures import FILES, draw
 
-    data = dataset.collect(plan, out / "journal.jsonl")
+    if options.shard.count > 1:
+        console.say(f"journal in {out / options.shard.journal}; when all shards are done, --collect joins them")
+        return sum(record["status"] == "failed" for record in read_records(out / options.shard.journal))
+    data = dataset.collect(plan, out)
     clear(out, ("report.html", *FILES))  # of other cases
     dataset.write(out / "sweep.nc", data)
-    files, problems = draw(out, plan, data) if pictures else ([], [])
+    if parquet.write(out / "sweep.parquet", plan, out) is None:
+        console.warn("sweep.parquet is not written: the package pyarrow is not installed")
+    if data.sizes["case"] < len(plan):
+        console.say(f"sweep.nc and figures show {data.sizes['case']} of {len(plan)} cases; sweep.parquet has all")
+    files, problems = draw(out, plan, data) if options.pictures else ([], [])
+    for line in multifidelity.lines(plan, data):
+        console.print(line)
     counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}
     table = Table(show_header=True, box=None, padding=(0, 2))
     for column in ("", "minimum", "mean", "maximum"):
@@ -171,7 +208,9 @@ def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
         inputs = ", ".join(f"{name} = {failures[name].values[k]}" for name in plan.names)
         console.warn(f"{inputs}: {failures.reason.values[k]}", "failed")
     console.print(", ".join(f"{count} {status}" for status, count in counts.items() if count or status == "done"))
-    console.say(f"results in {out}{os.sep} (sweep.nc, journal.jsonl{''.join(', ' + name for name in files)})")
+    console.say(
+        f"results in {out}{os.sep} (sweep.nc, sweep.parquet, journal.jsonl{''.join(', ' + name for name in files)})"
+    )
     for problem in problems:
         console.warn(str(problem))
     return counts["failed"]

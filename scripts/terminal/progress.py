@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
+from coilset.model.results.records.labels import largest_errors, within
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.run.analysis import Analysis
 from coilset.scripts.terminal.console import Console
@@ -92,12 +93,13 @@ class Lines:
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """Print the results."""
         table = Table(show_header=False, box=None, padding=(0, 2))
+        of_set = summary["estimated_set_error_mm"]
         table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
         for number, release in enumerate(summary["releases"][:-1], 1):
             table.add_row(f"free length after release {number}", quantity(release["free_length_mm"], "mm"))
         last = "free length after the last release" if len(summary["releases"]) > 1 else "free length after"
-        table.add_row(last, quantity(summary["free_length_after_mm"], "mm"))
-        table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
+        table.add_row(last, within(summary["free_length_after_mm"], of_set, "mm", 4))
+        table.add_row("[bold]set[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]")
         table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
         if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
             finished = summary["rate_30_70_after_N_per_mm"]
@@ -105,14 +107,17 @@ class Lines:
             table.add_row(name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm"))
         for rate in summary["rates"]:
             table.add_row(f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm"))
-        table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))
+        table.add_row("maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2))
         if summary["load_loss_percent"] is not None:
             table.add_row("load lost in time", quantity(summary["load_loss_percent"], "%", 2))
         table.add_row("block height", quantity(summary["block_height_mm"], "mm"))
         table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
-        inside, turn = quantity(summary["residual_shear_inside_MPa"], "MPa", 2), summary["residual_shear_inside_turn"]
+        error, turn = summary["estimated_residual_shear_inside_error_MPa"], summary["residual_shear_inside_turn"]
+        inside = within(summary["residual_shear_inside_MPa"], error, "MPa", 2)
         at = "" if turn is None else f" at turn {turn:.2f}"
         table.add_row("residual shear stress, inside of coil", inside + at)
+        if largest := largest_errors(summary["estimated_errors"]):
+            table.add_row("largest part of the errors ±", largest)
         self.console.print(table)
         self.console.say(f"  results in {out}{os.sep}", whole=True)
         for warning in summary["warnings"]:

@@ -16,6 +16,7 @@ from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.springs import spring_fit as study
+from coilset.verification.references import heun
 
 
 @pytest.fixture
@@ -33,7 +34,7 @@ def test_voce_in_tension_whatever_the_share(share):
     """σ = σ₀ + R (1 − exp(−m εᵖ)), by Heun's integration of the law itself."""
     law = Form("voce", 0.3, 293.15).law(study.TRUE | {"share": share})
     steps = [{"to": {"eps11": 0.012}, "increments": 200}]
-    history = programs.run(law, programs.Program.model_validate({"name": "tension", "steps": steps}), "heun")
+    history = heun.run(law, programs.Program.model_validate({"name": "tension", "steps": steps}))
     stress = history.stress[50:, 0]
     plastic = history.strain[50:, 0] - stress / law.E
     assert stress == pytest.approx(500.0 + 800.0 * -np.expm1(-300.0 * plastic), rel=3e-4)
@@ -44,7 +45,7 @@ def test_thesis_in_tension():
     form = Form("thesis", 0.3, 293.15)
     law = form.law(study.TRUE | {"rate": form.rate_at(300.0, 800.0)})
     steps = [{"to": {"eps11": 0.05}, "increments": 400}]
-    history = programs.run(law, programs.Program.model_validate({"name": "tension", "steps": steps}), "heun")
+    history = heun.run(law, programs.Program.model_validate({"name": "tension", "steps": steps}))
     assert history.stress[-1, 0] == pytest.approx(1300.0, rel=2e-3)  # nearly all of the rise
 
 

@@ -9,7 +9,7 @@ from coilset.model.case import check
 from coilset.model.contact.base import SEAT_DOFS, TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine
-from coilset.model.contact.friction import CoilFriction, SeatFriction
+from coilset.model.contact.friction import FORESEEN, CoilFriction, SeatFriction, along_cone, on_cone
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
 from coilset.model.results.files.checkpoint import Checkpoint
@@ -29,7 +29,9 @@ SPRING = {
 
 
 def dense(friction, x, seats, rotations):
-    """Forces and stiffness on displacements of all stations, seats, and rotations."""
+    """Forces and stiffness on displacements of all stations, seats, and rotations, exact after one iterate there."""
+    friction.evaluate(TrialPositions(x, seats, rotations))
+    friction.iterate()
     part = friction.evaluate(TrialPositions(x, seats, rotations))
     size = 2 * x.size + len(seats)
     f, K = np.zeros(size), np.zeros((size, size))
@@ -78,8 +80,7 @@ def test_stiffness_is_the_derivative_of_the_forces(rubbing, kind, seat):
     friction, x, seats, rotations = rubbing(kind, **seat)
     f, K = dense(friction, x, seats, rotations)
     size = np.linalg.norm(friction.memory["traction"].reshape(-1, 3), axis=1)
-    i = friction.touching(TrialPositions(x, seats))[0]
-    assert len(i[0]) > 10
+    assert len(friction.touching(TrialPositions(x, seats))[0]) > 10
     assert np.linalg.norm(K - K.T) > 1e-3 * np.linalg.norm(K)  # some slide
     assert size.max() > 0.0
     direction, h = np.random.default_rng(2).normal(size=f.shape), 1e-7
@@ -110,6 +111,31 @@ def test_tractions_stay_in_the_cone_and_points_stick_and_slide(rubbing, kind, se
     free = np.ones(friction.memory["traction"].shape[:-1], bool)
     free[places] = False
     assert not friction.memory["traction"][free].any()  # what does not bear does not rub
+
+
+def test_stiffness_is_a_chord_where_a_slip_reverses():
+    """From t* = 2 to −3 under μ p = 1, with the tangent of the last iterate on the way: 0 along the slip, so that 1 is
+    foreseen, where −1 is found. The chord from there to slip 0, with t = 1, is 2/3; across it the stiffness is 1/3."""
+    n, nothing, iterate = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), np.zeros(FORESEEN)
+    for T, along in (((2.0, 0.0, 0.0), 0.5), ((2.0, 0.0, 0.0), 0.0), ((-3.0, 0.0, 0.0), 2.0 / 3.0)):
+        t, cone = on_cone(T, n, 1.0, nothing, iterate)
+        assert t == pytest.approx((np.sign(T[0]), 0.0, 0.0))
+        assert along_cone(T, n, cone, (1.0, 0.0, 0.0), nothing, 0.0) == pytest.approx((along, 0.0, 0.0))
+        assert along_cone(T, n, cone, (0.0, 1.0, 0.0), nothing, 0.0) == pytest.approx((0.0, 1.0 / abs(T[0]), 0.0))
+
+
+def test_tractions_are_foreseen_to_first_order(rubbing):
+    """What the tangent of an iterate foresees for a small correction is what is found, to its square."""
+    friction, x, seats, rotations = rubbing("coils")
+    dense(friction, x, seats, rotations)
+    friction.iterate()
+    direction, errors = np.random.default_rng(6).normal(size=x.shape), []
+    for h in (1e-5, 5e-6):
+        friction.evaluate(TrialPositions(x + h * direction, seats, rotations))
+        at, found = friction._trial
+        slides = np.linalg.norm(found[:, :3], axis=1) > found[:, 3]
+        errors.append(np.abs(found[:, 4:] - friction.memory["traction"][at])[slides].max())
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)
 
 
 def test_a_point_between_two_coils_rubs_on_each_by_itself(points, helix):

@@ -30,20 +30,22 @@ def run(example, *settings):
 
 
 def without_errors(result):
-    return [replace(step, estimated_force_error_N=None, estimated_height_error_mm=None) for step in result.steps]
+    names = [f"{cause}_{number}" for cause in ("steps", "estimated") for number in ("force_error_N", "height_error_mm")]
+    return [replace(step, **dict.fromkeys(names)) for step in result.steps]
 
 
 def test_equal_steps_find_the_same_to_the_last_bit(example):
     known, bare = run(example, *SETTINGS), run(example, *SETTINGS, NONE)
-    assert all(step.estimated_force_error_N is not None for step in known.result.steps)
+    assert all(step.steps_force_error_N is not None for step in known.result.steps)
     assert list(bare.result.steps) == without_errors(known.result)
     np.testing.assert_array_equal(bare.rod.point_state, known.rod.point_state)
     names = [name for name, _ in bare.rod.state.items()]
     assert not [name for name in names if "finer" in name or "error" in name]
     told, summary = (summarise(one.setup, one.result) for one in (known, bare))
     changed = {name for name, value in summary.items() if value != told[name]}
-    assert changed == {"estimated_force_error_N", "estimated_set_error_mm", "warnings"}
-    assert summary["estimated_force_error_N"] is summary["estimated_set_error_mm"] is None
+    estimates = {name for name in summary if name.startswith("estimated_")}
+    assert changed == estimates | {"warnings"}
+    assert {summary[name] for name in estimates} == {None}
     assert {one["name"] for one in told["warnings"]} - {one["name"] for one in summary["warnings"]} == {"step error"}
     assert next(one.remark for one in answer(summary) if one.term == "maximum force").endswith("not estimated")
 
@@ -100,6 +102,6 @@ def test_a_run_goes_on_without_an_estimate_but_not_with_one_again(example, tmp_p
         resumed.resume(Checkpoint(folder, cases[0]).load(MPI.COMM_SELF))
         resumed.run()
         assert without_errors(resumed.result) == list(whole.result.steps)
-        assert resumed.result.steps[-1].estimated_force_error_N is None
+        assert resumed.result.steps[-1].steps_force_error_N is None
     with pytest.raises(InputError, match="accuracy: the errors of its steps were not estimated"):
         Checkpoint(tmp_path / "0", cases[1]).load(MPI.COMM_SELF)

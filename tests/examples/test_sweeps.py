@@ -1,5 +1,8 @@
 """Every shipped sweep has the cases that its file says, and one of them answers as it must."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +17,7 @@ SWEEPS = Path(__file__).resolve().parents[2] / "examples" / "sweeps"
 CASES = {
     "convergence": 8 + 7 + 7 + 6 - 3,  # one input at a time; the base case is among the values of all four
     "preset_height": 11 * 5 * 3,
+    "scatter": 1000,
     "thousand": 1000,
     "tolerances": (4 + 2) * 32,  # Sobol indices: two blocks of samples, and one for each input
 }
@@ -42,3 +46,14 @@ def test_what_is_pressed_farther_sets_by_nearly_as_much_more():
             analysis = Analysis(check(plan.data(row)), MPI.COMM_SELF)
             sets[values[plan.names[0]]] = summarise(analysis.setup, analysis.run())["set_mm"]
     assert 0.96 < (sets[20] - sets[22]) / 2.0 < 0.98
+
+
+@pytest.mark.parametrize(("script", "package"), [("optuna_pareto", "optuna"), ("salib_sobol", "SALib")])
+def test_other_programs_choose_the_cases(script, package, tmp_path):
+    """Each script ends in an assertion of its own."""
+    pytest.importorskip(package)
+    number = "20" if package == "optuna" else "16"
+    command = [sys.executable, str(SWEEPS / f"{script}.py"), str(tmp_path / "out"), number]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=dict(os.environ), cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert len(done.stdout.splitlines()) >= 2

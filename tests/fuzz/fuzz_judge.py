@@ -33,8 +33,8 @@ def read_case(path: str) -> None:
     law = case_law(case, spring)
     check_targets(case, spring, law.G)
     turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-    case.mesh.section.build()
-    Effort.of(len(turns) - 1, case.mesh.section.points, 1).check_memory(LARGEST)
+    rule = case.section_rule
+    Effort.of(len(turns) - 1, 2 * len(rule), 1).check_memory(LARGEST)
     case_warnings(case, spring, law)
     if case.temperature is not None:
         law.known(case.temperature)

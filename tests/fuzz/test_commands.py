@@ -54,7 +54,7 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     ],
     "sweep sweep.yaml": ["--overwrite", "--resume", "--retry", "--jobs", "1", "--ranks-per-case", "2", "--no-pictures"],
     "material show ck15": ["--out", "there", "--overwrite"],
-    "material test ck15 program.yaml": ["--integrator", "heun", "--no-spin", "--out", "there", "--overwrite"],
+    "material test ck15 program.yaml": ["--no-spin", "--out", "there", "--overwrite"],
     "material fit test.csv --G 80000 --nu 0.3": ["--temperature", "300", "--no-saturation", "--name", "mine"],
     "design design.yaml": ["--overwrite", "--resume", "--out", "there"],
     "report run": ["--overwrite", "--out", "there"],

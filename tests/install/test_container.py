@@ -10,7 +10,7 @@ def test_it_installs_the_list_of_packages_and_nothing_else():
     installing = [line for line in LINES if "apt-get install" in line]
     assert len(installing) == 1
     assert installing[0].split("--no-install-recommends ")[1].startswith("$(cat scripts/packages.txt)")
-    assert "COPY scripts/packages.txt scripts/" in LINES
+    assert "COPY scripts/packages.txt scripts/wheels.txt scripts/" in LINES
 
 
 def test_it_starts_the_launcher_of_its_checkout():

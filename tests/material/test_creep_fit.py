@@ -65,7 +65,7 @@ def test_loss_of_a_bar_in_torsion(hours):
 def test_loss_of_a_wire_in_tension(form, constants):
     """As the law's own integration at a point finds it, with steps equal in log t."""
     law, temperature, stress = library.load("creeping"), 393.15, 700.0
-    creep = CreepLaw(Creep(form=form, **constants), law.parameters(temperature))
+    creep = CreepLaw(Creep(form=form, **constants), law.parts(law.parameters(temperature)))
     state, new, C = np.zeros(9), np.zeros(9), np.empty((3, 3))
     state[0], state[7] = stress, temperature
     clock = creep.clock(0.0, temperature)

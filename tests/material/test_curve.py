@@ -6,9 +6,7 @@ import pytest
 from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError
 from coilset.model.material import programs
-from coilset.model.material.creep.law import without_yield
 from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.functions import functions
 from coilset.model.material.law.law import Law
 
 G, NU = 80000.0, 0.3
@@ -134,10 +132,3 @@ def test_what_is_wrong_is_said_in_one_line(isotropic, problem):
     with pytest.raises(InputError, match=problem) as caught:
         law(isotropic)
     assert "\n" not in str(caught.value)
-
-
-def test_creep_flows_beside_a_curve_without_its_yield():
-    """The array of a material without yield is that of an elastic one, whatever stands behind its rows."""
-    entries, _ = LAWS["swift"]
-    p = without_yield(law(entries).parameters())
-    assert np.isinf(functions(p, 10.0, 293.15)[0])

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coilset.model.material import library, points, programs
+from coilset.model.material import library, programs
+from coilset.verification.references import heun
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "material.md").read_text(encoding="utf-8")
 
@@ -42,7 +43,7 @@ def test_yaml_examples(tmp_path):
     rise = 0.9 / (7.85e-9 * 4.7e8) * history.work[-1]
     assert history.temperature[-1] == pytest.approx(293.15 + rise, rel=1e-9)
     assert set(library.names()) == set(re.findall(r"^\| `(\w+)` \|", TEXT, re.MULTILINE)) - {"return_mapping"}
-    assert points.INTEGRATORS == ("return_mapping", "heun")
+    assert tuple(heun.UPDATES) == ("return_mapping", "heun")
 
 
 def test_every_law_of_a_curve_is_one(tmp_path):

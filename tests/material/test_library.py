@@ -10,13 +10,14 @@ from scipy.integrate import quad
 
 from coilset.model.base.errors import InputError
 from coilset.model.material import library, points
+from coilset.verification.references import heun
 
 
 def tension(law, strain, n):
     """σ11 by Heun's method."""
     state = points.initial_state(law, 1)
     for _ in range(n):
-        state = points.update(law, state, np.array([[strain / n, 0, 0]]), "heun", tolerance=1e-6)[0]
+        state = heun.update(law, state, np.array([[strain / n, 0, 0]]), tolerance=1e-6)[0]
     return state[0, 0]
 
 

@@ -8,7 +8,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.material.creep.rate import RateLaw
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
-from coilset.model.material.point import rod, solid
+from coilset.model.material.point.increment import advance as advance_point
 
 YIELD, G, NU = 400.0, 80000.0, 0.3
 SLOW, FAST = 1e12, 1e-12  # seconds that an increment takes
@@ -37,12 +37,11 @@ def law_of(exponent=5.0, reference_rate=100.0, slope=0.0, zeta=0.0, **more):
 
 def advance(law, state, de, seconds):
     """One increment; state and tangent."""
-    p = law.parameters()
+    parts = law.parts()
     if seconds is not None:
-        p = RateLaw(law.data.rate, p).over(np.zeros(3), np.array([seconds / 3600.0, 293.15, 0.0]))
+        parts = RateLaw(law.data.rate, parts).over(np.zeros(3), np.array([seconds / 3600.0, 293.15, 0.0]))
     new, C = np.full_like(state, np.nan), np.empty((len(de), len(de)))
-    count = rod.return_map(p, state, *de, new, C) if len(de) == 3 else solid.return_map(p, state, de, new, C)
-    assert count >= 0
+    assert advance_point(parts, state, de, new, C) >= 0
     return new, C
 
 
@@ -86,7 +85,7 @@ def test_steady_flow(exponent, rate):
 
 
 def test_stress_beyond_yield_relaxes():
-    """Pulled fast, then held: σ̇ = −E ṗ₀ (σ/σ_y(b*) − 1)^m and ḃ* = σ ṗ of a bar, by scipy; of first order."""
+    """Pulled fast, then held: σ̇ = −E ṗ₀ (σ/σ_y(b*) − 1)^m and ḃ* = σ ṗ of a bar, by scipy; of second order."""
     law, H = law_of(3.0, slope=2000.0), 2000.0
     E, errors = law.E, []
     start, _ = advance(law, np.zeros(7), np.array([4e-3, 0.0, 0.0]), 1e-9)
@@ -105,7 +104,7 @@ def test_stress_beyond_yield_relaxes():
             state, _ = advance(law, state, np.zeros(3), seconds / n)
         errors.append(state[0] - exact)
     assert abs(errors[1]) < 0.02 * exact
-    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.2)
+    assert errors[0] / errors[1] == pytest.approx(4.0, abs=0.4)
 
 
 def test_small_flow_at_much_work():
@@ -140,14 +139,13 @@ def test_tangent(components, exponent):
             rest.append(np.linalg.norm(moved[:components] - new[:components] - h * C @ v) / np.linalg.norm(h * C @ v))
         assert rest[-1] < 2e-3
         if rest[0] > 1e-8:  # else it is linear
-            assert np.polyfit(np.log(steps), np.log(rest), 1)[0] == pytest.approx(1, abs=0.15)
+            assert np.polyfit(np.log(steps), np.log(rest), 1)[0] > 0.9
 
 
 @pytest.mark.parametrize(
     ("more", "message"),
     [
         ({"heating": {"dissipated": 0.9, "density": 7.85e-9, "specific_heat": 4.7e8}}, "constants at two temperatures"),
-        ({"creep": {"form": "norton_bailey", "strain": 1e-4, "stress": 500.0, "exponent": 5.0}}, "not with creep"),
         ({"rate": {"reference_rate": 0.0, "exponent": 5.0}}, "greater than 0"),
     ],
 )

@@ -5,7 +5,7 @@ import pytest
 
 from coilset.model.material import library
 from coilset.model.material.point.rod import return_map
-from coilset.model.material.point.rod_points import GROUP, return_map_points
+from coilset.model.material.point.rod_rows import GROUP, return_map_points
 from coilset.model.material.points import initial_state
 
 MATERIALS = ("ck15", "linear_isotropic", "linear_kinematic", "mixed", "ideal_plastic", "voce")

@@ -38,7 +38,7 @@ def pressed(request, example):
     seats[8] = x[-1, 2] + seats[8] - x0[-1, 2] - 0.02
     seats[2] += x[0, 2] - x0[0, 2] + 0.02
     for contact in analysis.system.contacts:
-        if hasattr(contact, "multiplier_offset"):
+        if contact.multiplier_offset is not None:
             contact.multiplier_offset[...] = np.abs(rng.normal(scale=2e-3, size=contact.multiplier_offset.shape))
     return analysis, x, seats, rotations
 

@@ -67,7 +67,7 @@ def sweep_page(tmp_path_factory):
                     "seconds": 1.0,
                 }
             )
-    dataset.write(out / "sweep.nc", dataset.collect(plan, out / "journal.jsonl"))
+    dataset.write(out / "sweep.nc", dataset.collect(plan, out))
     return write_sweep_report(out)
 
 

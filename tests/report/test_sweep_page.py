@@ -48,7 +48,7 @@ def folder(plan):
     with closing(Journal(out / "journal.jsonl")) as journal:
         for number, (row, key) in enumerate(zip(plan.rows[:5], plan.keys, strict=False)):
             record = (
-                evaluate(**plan.task(row), comm=MPI.COMM_SELF)
+                evaluate(**plan.task(row, key), comm=MPI.COMM_SELF)
                 if number < 3
                 else {
                     "status": "failed",
@@ -58,8 +58,8 @@ def folder(plan):
                     "seconds": 9.0,
                 }
             )
-            journal.append({"key": key, **record})
-    dataset.write(out / "sweep.nc", dataset.collect(plan, out / "journal.jsonl"))
+            journal.append(record | {"key": key})
+    dataset.write(out / "sweep.nc", dataset.collect(plan, out))
     return out
 
 

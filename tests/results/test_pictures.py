@@ -190,7 +190,7 @@ def test_each_of_a_few_steps_is_named_beside_the_pressure(analysis, count, named
     assert len(figure.axes[0].get_yticks()) == named
 
 
-@pytest.mark.parametrize(("beyond", "title"), [(3, "Maximum force: 2.4 active turns"), (8, "Turns over travel")])
+@pytest.mark.parametrize(("beyond", "title"), [(3, "At the maximum force 2.4 active turns"), (8, "Turns over travel")])
 def test_active_turns_that_mean_nothing_are_counted_and_not_drawn(analysis, beyond, title):
     """Where the force hardly changes the quotient is any number; lines to it would cover the others."""
     steps = [a_step(k, travel=float(k), force=9.0 * k) for k in range(1, 9)]

@@ -89,7 +89,7 @@ def test_a_section_that_grows_evenly_bears_no_stress(files, kind):
     law = library.load(files["elastic creeps"])
     place = straight(1)._replace(curvature=np.full((1, 2), 0.05))
     sections = make_sections(kind, law, law.parameters(COLD), polar(3, 8), np.array([2.5]), place, COLD)
-    creep = CreepLaw(law.creep, law.parameters(COLD))
+    creep = CreepLaw(law.creep, law.parts(law.parameters(COLD)))
     start = sections.initial_state() | {"strain": np.zeros((1, 2, 6)), "clock": creep.clock(0.0, COLD)}
     growth, s, D, stress = law.thermal_strain(COLD, WARM), np.empty((1, 2, 6)), np.empty((1, 2, 6, 6)), []
     for axis in (0.0, growth):
@@ -157,8 +157,8 @@ def test_an_equilibrium_found_again_after_the_heat_is_no_step_of_the_path(files)
 
     analysis.newton.solve, following = keep, []
     steps = analysis.run(lambda _: following.append(analysis.continuation.guess.scaled_last(1.0).getArray())).steps
-    assert [step.estimated_force_error_N for step in steps[1:]] == pytest.approx(
-        [step.estimated_force_error_N for step in alone[1:]], rel=0.02
+    assert [step.steps_force_error_N for step in steps[1:]] == pytest.approx(
+        [step.steps_force_error_N for step in alone[1:]], rel=0.02
     )
     of_steps = outcomes[1:]  # after the initial rate
     assert len(of_steps) == 2 * len(steps)

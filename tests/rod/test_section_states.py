@@ -41,7 +41,7 @@ def test_trial_states_need_not_be_kept(example, monkeypatch, settings):
     monkeypatch.setattr(section_states, "KEPT", 4)
     passing = run(example, settings, fails)
     assert passing.result.steps == kept.result.steps
-    assert [step.estimated_force_error_N is None for step in kept.result.steps].count(True) == len(fails)
+    assert [step.steps_force_error_N is None for step in kept.result.steps].count(True) == len(fails)
     start, *later = zip(passing.result.snapshots, kept.result.snapshots, strict=True)
     # what is kept was evaluated at rest
     np.testing.assert_allclose(start[0].point_state, start[1].point_state, rtol=0.0, atol=1e-10)

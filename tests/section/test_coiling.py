@@ -58,7 +58,7 @@ def test_an_elastic_wire_keeps_no_shape():
 
 def relief(law, hours, temperature, intervals):
     """The law over the intervals of a relief at constant temperature."""
-    creep = CreepLaw(law.creep, law.parameters())
+    creep = CreepLaw(law.creep, law.parts())
     clocks = [creep.clock(0.0, 293.15), creep.clock(0.0, temperature)]
     clocks += [creep.clock(t, temperature) for t in hours * np.linspace(0.0, 1.0, intervals + 1)[1:] ** 4]
     for clock in clocks[2:]:
@@ -75,7 +75,7 @@ def test_relief_against_fibres_that_creep():
     y, w, k = RADIUS * rule.points[:, 0], rule.weights, law.creep
     part = (warm - 293.15) / 280.0
     E = [2.0 * 1.29 * G for G in (79000.0, 79000.0 - part * 7900.0)]
-    worth = CreepLaw(law.creep, law.parameters()).worth(1.0, warm, warm)
+    worth = CreepLaw(law.creep, law.parts()).worth(1.0, warm, warm)
 
     def rates(_, state):
         s, c = state.reshape(2, -1)

@@ -65,3 +65,9 @@ def test_the_default_of_a_case_is_that_of_the_rule():
     default, rule = SectionSpec().build(), polar()
     assert default.name == rule.name == "polar 8 × 20, staggered"
     np.testing.assert_array_equal(default.points, rule.points)
+
+
+def test_coiled_wire_has_more_angles_unless_the_case_gives_them():
+    spec = SectionSpec()
+    assert spec.build(coiled=True).name == "polar 8 × 32, staggered"
+    assert SectionSpec(angular=24).build(coiled=True).name == SectionSpec(angular=24).build().name

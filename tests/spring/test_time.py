@@ -65,9 +65,9 @@ def test_steps_after_a_hold_take_no_time():
     when the finer path went back to the middle of the hold."""
     held = {"hold": {"hours": 1000}, "steps": 4}
     steps = analysis_of([HOLD[0], held, {"to": {"travel": 5}, "steps": 2}]).run().steps
-    assert steps[4].estimated_force_error_N > 0.1
+    assert steps[4].steps_force_error_N > 0.1
     for step in steps[5:]:
-        assert step.estimated_force_error_N == pytest.approx(steps[4].estimated_force_error_N, rel=0.02)
+        assert step.steps_force_error_N == pytest.approx(steps[4].steps_force_error_N, rel=0.02)
     automatic = analysis_of([HOLD[0], held, {"to": {"travel": 5}}]).run().steps
     assert len(automatic) - 5 < 16  # fewer than regular ones
 
@@ -197,9 +197,9 @@ def test_the_error_of_fast_steps_is_known(viscous):
         return analysis_of([phase], material=viscous, temperature=293.15).run().steps[-1]
 
     coarse, fine, still = pressed(6, seconds=1.0), pressed(24, seconds=1.0), pressed(6)
-    error = fine.force_N + fine.estimated_force_error_N - coarse.force_N
-    assert coarse.estimated_force_error_N == pytest.approx(error, rel=0.15)
-    assert coarse.estimated_force_error_N > 5.0 * still.estimated_force_error_N
+    error = fine.force_N + fine.steps_force_error_N - coarse.force_N
+    assert coarse.steps_force_error_N == pytest.approx(error, rel=0.15)
+    assert coarse.steps_force_error_N > 5.0 * still.steps_force_error_N
 
 
 def test_the_error_of_steps_without_time_is_known_after_a_heating():
@@ -210,6 +210,6 @@ def test_the_error_of_steps_without_time_is_known_after_a_heating():
         analysis_of(loading, temperature=start).run().steps[-8:]
         for loading, start in (([heat, press], 373.15), ([press], 423.15))
     )
-    errors = [[step.estimated_force_error_N for step in steps] for steps in (heated, warm)]
+    errors = [[step.steps_force_error_N for step in steps] for steps in (heated, warm)]
     assert None not in errors[0]
     assert errors[0] == pytest.approx(errors[1], abs=0.02 * errors[1][-1])

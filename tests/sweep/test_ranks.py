@@ -9,9 +9,9 @@ from mpi4py import MPI
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.run.analysis import Analysis
+from coilset.model.sweep.engines.mpi import mpi_pool
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.journal import Journal, read_records
-from coilset.model.sweep.mpi_pool import mpi_pool
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import missing, run
 
@@ -101,7 +101,7 @@ def test_sweep_over_ranks_is_the_sweep_of_one_process(write_sweep, tmp_path):
     if COMM.rank == 0:
         records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
         assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed"]
-        alone = evaluate(**plan.task(plan.rows[1]), comm=MPI.COMM_SELF)
+        alone = evaluate(**plan.task(plan.rows[1], plan.keys[1]), comm=MPI.COMM_SELF)
         same(records[plan.keys[1]]["summary"], alone["summary"])
 
 
@@ -117,7 +117,7 @@ def test_two_ranks_share_a_case(write_sweep, tmp_path):
         records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
         assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed"]
         for row, key in zip(plan.rows[:2], plan.keys[:2], strict=True):
-            alone = evaluate(**plan.task(row), comm=MPI.COMM_SELF)
+            alone = evaluate(**plan.task(row, key), comm=MPI.COMM_SELF)
             for name in ("set_mm", "force_max_N"):  # the case's own tolerance of 1e-7 bounds the agreement
                 assert records[key]["summary"][name] == pytest.approx(alone["summary"][name], rel=1e-7)
 

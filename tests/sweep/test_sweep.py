@@ -22,12 +22,13 @@ from coilset.model.case import check
 from coilset.model.material.library import FOLDER
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
-from coilset.model.sweep import dataset, pools
+from coilset.model.sweep import dataset
+from coilset.model.sweep.engines import processes
+from coilset.model.sweep.engines.processes import Workers
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.figures.figures import draw
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.pools import Workers
 from coilset.model.sweep.run import finished, missing, run
 from coilset.model.sweep.spec import RESPONSES
 from coilset.scripts.terminal.log import only_run
@@ -47,14 +48,14 @@ def sweep(plan, folder, jobs=1, retry=False):
         closing(Journal(path)) as journal,
         workers.pool(folder / "log") as pool,
     ):
-        run(plan, missing(plan, finished(path, retry)), pool, journal, lambda record: ran.append(record["key"]))
+        run(plan, missing(plan, finished(folder, retry)), pool, journal, lambda record: ran.append(record["key"]))
     return ran
 
 
 def test_cases_are_those_of_single_runs_and_a_wrong_spring_stops_nothing(write_sweep, tmp_path):
     plan = Plan(write_sweep(THREE))
     assert len(sweep(plan, tmp_path)) == 3
-    data = dataset.collect(plan, tmp_path / "journal.jsonl")
+    data = dataset.collect(plan, tmp_path)
     assert data.status.values.tolist() == ["done", "done", "failed"]
     assert "spring" in str(data.reason.values[2])
     for k in range(2):
@@ -78,7 +79,7 @@ def test_resume_runs_only_what_is_missing_and_retry_what_failed(write_sweep, tmp
     assert sweep(more, tmp_path) == [more.keys[1], more.keys[3]]
     assert sweep(more, tmp_path, retry=True) == [more.keys[4]]
     changed = Plan(write_sweep("change: {solver.tolerance: 1.0e-10}\nvary: {spring.wire_diameter: [4.0]}"))
-    assert sweep(changed, tmp_path) == changed.keys
+    assert sweep(changed, tmp_path) == list(changed.keys)
 
 
 def test_process_that_dies_is_the_reason_of_its_case_only(write_sweep, tmp_path, monkeypatch):
@@ -88,13 +89,15 @@ def test_process_that_dies_is_the_reason_of_its_case_only(write_sweep, tmp_path,
         "import json, os, sys\n"
         "assert json.loads(sys.stdin.readline()).endswith('log')\n"
         "for line in sys.stdin:\n"
-        "    if json.loads(line)['data']['spring']['wire_diameter'] == 5.0: os.kill(os.getpid(), 11)\n"
-        "    print(json.dumps(dict(status='done', reason='', summary={}, steps={}, seconds=0)), flush=True)\n"
+        "    tasks = json.loads(line)\n"
+        "    if 5.0 in [task['data']['spring']['wire_diameter'] for task in tasks]: os.kill(os.getpid(), 11)\n"
+        "    rest = dict(status='done', reason='', summary={}, steps={}, seconds=0)\n"
+        "    print(json.dumps([dict(key=task['key'], **rest) for task in tasks]), flush=True)\n"
     )
-    monkeypatch.setattr(pools, "WORKER", [sys.executable, str(stub)])
+    monkeypatch.setattr(processes, "WORKER", [sys.executable, str(stub)])
     plan = Plan(write_sweep(THREE))
     sweep(plan, tmp_path)
-    data = dataset.collect(plan, tmp_path / "journal.jsonl")
+    data = dataset.collect(plan, tmp_path)
     assert data.status.values.tolist() == ["done", "failed", "done"]
     assert data.reason.values[1] == "the process of this case ended with signal 11"
 
@@ -209,8 +212,8 @@ def test_figures_of_each_kind_and_one_without_a_response(write_sweep, tmp_path):
     plan = Plan(write_sweep(text))
     with closing(Journal(tmp_path / "journal.jsonl")) as journal:
         for row, key in zip(plan.rows, plan.keys, strict=True):
-            journal.append({"key": key, **evaluate(**plan.task(row), comm=MPI.COMM_SELF)})
-    data = dataset.collect(plan, tmp_path / "journal.jsonl")
+            journal.append(evaluate(**plan.task(row, key), comm=MPI.COMM_SELF))
+    data = dataset.collect(plan, tmp_path)
     numbers = {name for name in data.data_vars if data[name].dims == ("case",) and data[name].dtype.kind == "f"}
     assert numbers == set(RESPONSES)  # what `figures.of` may name is known before any case runs
     files, problems = draw(tmp_path, plan, data.drop_vars("seconds"))
@@ -254,7 +257,7 @@ def test_what_cannot_be_drawn_does_not_end_a_sweep(write_sweep, tmp_path, text, 
             journal.append(
                 {"key": key, "status": "done", "reason": "", "seconds": 1.0, "summary": summary, "steps": steps}
             )
-    files, problems = draw(tmp_path, plan, dataset.collect(plan, tmp_path / "journal.jsonl"))
+    files, problems = draw(tmp_path, plan, dataset.collect(plan, tmp_path))
     assert (files[-1].split("_")[1] if files else None) == (drawn and f"{drawn}.png")
     assert [problem in error.problem for error in problems] == [True] * bool(problem)
 
@@ -346,7 +349,7 @@ def test_inputs_have_the_units_of_their_entries(write_sweep, tmp_path):
           both: {values: [12.0], entries: [spring.pitch, mesh.sagitta]}
           mixed: {values: [12.0], entries: [spring.pitch, loading.1.to.force]}
     """
-    data = dataset.collect(Plan(write_sweep(text)), tmp_path / "journal.jsonl")
+    data = dataset.collect(Plan(write_sweep(text)), tmp_path)
     found = {name: data[name].attrs["units"] for name in data.attrs["inputs"]}
     assert found == {
         "spring.wire_diameter": "mm",
@@ -384,7 +387,7 @@ def test_a_material_file_that_changes_during_the_sweep_gives_no_case_of_before(w
     (tmp_path / "own.yaml").write_text(ck15)
     change = "change: {material: %s, loading: [{to: {travel: 1}, steps: 1}]}" % (tmp_path / "own.yaml")
     plan = Plan(write_sweep(f"{change}\nvary: {{spring.wire_diameter: [5.0]}}"))
-    task = plan.task(plan.rows[0]) | {"key": plan.keys[0]}
+    task = plan.task(plan.rows[0], plan.keys[0])
     assert evaluate(**task, comm=MPI.COMM_SELF)["status"] == "done"
     (tmp_path / "own.yaml").write_text(ck15.replace("22480", "22481"))
     record = evaluate(**task, comm=MPI.COMM_SELF)

@@ -1,9 +1,10 @@
-"""The cost of the run, and the accuracy of its steps."""
+"""The cost of the run, and the accuracy of its forces."""
 
 import numpy as np
 
 from coilset.model.figures.panels.panel import COLOURS, Panel, axis, curve
 from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import largest_errors
 
 
 def cost(run: Run) -> Panel:
@@ -28,21 +29,28 @@ def cost(run: Run) -> Panel:
 
 
 def step_error(run: Run) -> Panel | None:
-    """Estimated error of the force due to the step size; None if unknown."""
-    error = run.data["estimated_force_error_N"].values
-    if not np.isfinite(error).any():
+    """Estimated error of the force by all causes, and by the steps alone; None if unknown."""
+    columns = {"all causes": "estimated_force_error_N", "steps alone, signed": "steps_force_error_N"}
+    known = {
+        label: run.data[name].values
+        for label, name in columns.items()
+        if name in run.data and np.isfinite(run.data[name].values).any()
+    }
+    if not known:
         return None
     last = run.summary["estimated_force_error_N"]
     finding = (
-        "Error of the force due to the step size"
+        "Error of the force"
         if last is None
-        else f"The step size causes an error of about {abs(last):.2g} N in the maximum force"
+        else f"The maximum force is estimated to be within {last:.2g} N; the largest part is from "
+        f"{largest_errors(run.summary.get('estimated_errors'))}"
     )
+    steps = run.data["step"].values
     return Panel(
         "step_error",
         finding,
-        f"{finding}. Estimated error over the steps.",
-        [curve(run.data["step"].values, error, 1, marker=5, showlegend=False)],
+        f"{finding}. Estimated error of the force at each step.",
+        [curve(steps, values, k, marker=5, name=label) for k, (label, values) in enumerate(known.items(), 1)],
         {"xaxis": axis("step"), "yaxis": axis("error of the force, N")},
         height=320,
     )

@@ -185,7 +185,13 @@ def contact_length(run: Run) -> Panel | None:
         return None
     lengths = {end: run.data[f"{end}_length_mm"].values for end in ENDS}
     most = int(np.nanargmax(np.abs(run.data["force_N"].values)))
-    finding = f"Maximum force: {' and '.join(plain(float(one[most]), 3) for one in lengths.values())} mm in contact"
+    bottom, top = (plain(float(one[most]), 3) for one in lengths.values())
+    words = (
+        f"{bottom} mm of wire on each seat"
+        if bottom == top
+        else f"{bottom} mm on the bottom and {top} mm on the top seat"
+    )
+    finding = f"At the maximum force {words}"
     return Panel(
         "contact_length",
         finding,
@@ -213,7 +219,7 @@ def active_turns(run: Run) -> Panel | None:
         name = words + (f" (beyond {limit:g} turns: {beyond} of the steps)" if beyond else "")
         curves.append((np.where(values <= limit, values, np.nan), {"name": name, **drawn}))
     turns = float(run.data["active_turns"].values[int(np.nanargmax(np.abs(run.data["force_N"].values)))])
-    finding = f"Maximum force: {turns:.3g} active turns" if turns <= limit else "Turns over travel"
+    finding = f"At the maximum force {turns:.3g} active turns" if turns <= limit else "Turns over travel"
     return Panel(
         "active_turns",
         finding,

@@ -12,11 +12,12 @@ import math
 
 import numpy as np
 
-from coilset.model.material.creep.creep import Creeping
 from coilset.model.material.creep.flow import SCALED
-from coilset.model.material.law.file import Creep
-from coilset.model.material.law.functions import B1, K0, N_ROWS, NODES, ROW_LENGTH, ROWS_START
+from coilset.model.material.law.file import Creep, RateDependence
+from coilset.model.material.law.functions import RATE
+from coilset.model.material.law.parts import Parts
 
+SECONDS = 3600.0  # of an hour
 GAS_CONSTANT = 8.31446261815324  # J/(mol K)
 # The clock of a body: hours since the start, temperature (K), and the equivalent hours at T₀.
 HOURS, TEMPERATURE, WORTH = range(3)
@@ -34,12 +35,13 @@ class CreepLaw:
 
     Args:
         data: the checked entries.
-        plastic: parameter array of the law, `Law.parameters()`.
+        parts: Parts of the law, `Law.parts()`.
         own: has each point a temperature of its own? Otherwise all have the clock's.
+        rate: entries of yield that depends on the rate, if it does.
     """
 
-    def __init__(self, data: Creep, plastic: np.ndarray, own: bool = False) -> None:
-        self.data, self.own, self._plastic, self._elastic = data, own, plastic, without_yield(plastic)
+    def __init__(self, data: Creep, parts: Parts, own: bool = False, rate: RateDependence | None = None) -> None:
+        self.data, self.own, self._parts, self._rate = data, own, parts, rate
         self._gauss, self._weights = np.polynomial.legendre.leggauss(12)
 
     def worth(self, hours: float, start: float, end: float) -> float:
@@ -58,7 +60,7 @@ class CreepLaw:
         worth = passed if self.own else self.worth(passed, float(before[TEMPERATURE]), temperature)
         return np.array([hours, temperature, before[WORTH] + worth])
 
-    def over(self, start: np.ndarray, end: np.ndarray) -> Creeping:
+    def over(self, start: np.ndarray, end: np.ndarray) -> Parts:
         """The law over the time between two clocks."""
         data, power = self.data, self.data.time_exponent
         time = float(end[WORTH] - start[WORTH])
@@ -69,7 +71,10 @@ class CreepLaw:
         viscous = np.array(
             [time, power, form, data.strain, data.stress, data.exponent, end[TEMPERATURE], energy, data.temperature]
         )
-        return Creeping(self._plastic, self._elastic, viscous)
+        hours, plastic = float(end[HOURS] - start[HOURS]), self._parts.plastic
+        if self._rate and hours > 0.0:
+            plastic = at_rate(self._rate, plastic, hours)
+        return self._parts._replace(plastic=plastic, viscous=viscous)
 
     def strain(self, stress: float, hours: float, temperature: float) -> float:
         """Equivalent creep strain after some hours of constant stress (N/mm²) and temperature (K)."""
@@ -104,10 +109,8 @@ class CreepLaw:
         return data.exponent / (1.0 if data.hardening == "time" else data.time_exponent) * steeper
 
 
-def without_yield(plastic: np.ndarray) -> np.ndarray:
-    """A parameter array with an infinite yield stress."""
-    elastic = plastic.copy()
-    rows = elastic[ROWS_START : ROWS_START + int(plastic[N_ROWS]) * ROW_LENGTH].reshape(-1, ROW_LENGTH)
-    rows[:, [K0, B1]] = np.inf
-    rows[:, NODES] = 0.0
-    return elastic
+def at_rate(data: RateDependence, plastic: np.ndarray, hours: float) -> np.ndarray:
+    """The parameter array of an increment that takes some hours."""
+    plastic = plastic.copy()
+    plastic[RATE] = 1.0 / (data.reference_rate * SECONDS * hours)
+    return plastic

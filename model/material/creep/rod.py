@@ -1,4 +1,4 @@
-"""Creep of a rod's point that does not yield: both stages of `creep` in closed form but for one unknown each.
+"""Creep of a rod's point that does not yield: both stages of `increment` in closed form but for one unknown each.
 
 With c = θ σ the equivalent creep strain of a stage, its stress follows from the elastic one s̃ of the whole strain,
 
@@ -10,7 +10,7 @@ little and where it is much; Newton's method starts at c(σ̃)/σ̃, above the r
     C⁻¹ + ∂x/∂s = diag(1/E + θ, 1/G + 3θ, 1/G + 3θ) + (∂c/∂σ − θ) d dᵀ,   d = ∂σ/∂s,
 
 inverted in closed form, too (Sherman and Morrison). Where a stage's stress lies outside the yield surface, all is left
-to `creep.creep_map`.
+to `increment.advance`; both give the same numbers.
 """
 
 import math
@@ -20,12 +20,14 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.material.creep.creep import GAMMA, MAX_ITERATIONS, TOLERANCE, Creeping, creep_map
 from coilset.model.material.creep.flow import POWER, TIME, passes, rate
-from coilset.model.material.law.functions import elasticity, functions
-from coilset.model.material.point.rod_plastic import active, inner
-from coilset.model.material.point.spin import Vector
+from coilset.model.material.law.functions import SPIN, elasticity, functions
+from coilset.model.material.law.parts import Parts
+from coilset.model.material.point.increment import GAMMA, advance
+from coilset.model.material.point.rod import Vector, active, inner
 
+MAX_ITERATIONS = 60
+TOLERANCE = 1e-11  # of the creep strain's last correction, over the increment of strain
 WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²
 # A stage's end: stress, its direction d, θ, c, u, and ∂c/∂σ − θ at constant time; iterations, -1 if there is none.
 Stage = namedtuple("Stage", "stress d theta c u normal count")
@@ -34,19 +36,16 @@ Inverse = namedtuple("Inverse", "D k v")
 
 
 @njit(**KERNEL)
-def rod_map(
-    law: Creeping, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
-) -> int:
-    """`creep.creep_map` with the arguments of the rod's return mapping."""
-    q = law.viscous
+def rod_map(law: Parts, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray) -> int:
+    """`increment.advance` with the arguments of the rod's return mapping."""
     count = -1
-    if q[TIME] > 0.0:
+    if law.viscous[TIME] > 0.0 and law.plastic[SPIN] == 0.0:
         count = _without_yield(law, old, (de11, dg12, dg13), new, C)
-    return count if count >= 0 else creep_map(law, old, np.array([de11, dg12, dg13]), new, C)
+    return count if count >= 0 else advance(law, old, np.array([de11, dg12, dg13]), new, C)
 
 
 @njit(**KERNEL)
-def _without_yield(law: Creeping, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
+def _without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
     """One increment if no stage yields; else, or if a stage finds no end, -1, and nothing of what is written counts."""
     q, power = law.viscous, law.viscous[POWER]
     h, after = passes(q, old[7])
@@ -88,7 +87,7 @@ def _without_yield(law: Creeping, old: np.ndarray, de: Vector, new: np.ndarray, 
         return -1
     for i in range(3):
         new[i] = two.stress[i]
-    for i in range(3, 7):
+    for i in range(3, old.shape[0]):
         new[i] = old[i]
     new[7], new[8] = before + change, c1 + two.c
 

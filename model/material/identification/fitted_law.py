@@ -12,7 +12,8 @@ from numba import njit
 
 from coilset.model.material.identification.experiments import COMPONENTS, Test
 from coilset.model.material.law import functions as fn
-from coilset.model.material.point.heun import ROD_METRIC, integrate
+from coilset.model.material.law.parts import CREEP_ENTRIES, Parts
+from coilset.model.material.point.increment import advance
 
 SUBSTEP = 1e-3  # maximum strain increment of the simulation
 LARGE = 1e3  # residual of a law that cannot follow a test
@@ -23,23 +24,24 @@ Variables = Mapping[str, float]
 
 
 @njit(**fn.KERNEL)
-def _simulate(p: np.ndarray, strain: np.ndarray, stress: np.ndarray) -> float:
-    """Stress along a strain path, by Heun's method with sub-steps of fixed size, smooth in the constants.
+def _simulate(law: Parts, strain: np.ndarray, stress: np.ndarray) -> float:
+    """Stress along a strain path, in sub-steps of fixed size, smooth in the constants.
 
     Returns:
         b* at the end, -1 if the law cannot follow the path.
     """
-    y, d, w = np.zeros(9), np.zeros(3), np.array(ROD_METRIC)
+    y, new, d, C = np.zeros(7), np.zeros(7), np.zeros(3), np.empty((3, 3))
     e = g = 0.0
     for i in range(strain.shape[0]):
         de, dg = strain[i, 0] - e, strain[i, 1] - g
         e, g = strain[i, 0], strain[i, 1]
         n = max(1, math.ceil(max(abs(de), abs(dg)) / SUBSTEP))
-        d[0], d[1] = de / n, 0.5 * dg / n
+        d[0], d[1] = de / n, dg / n
         for _ in range(n):
-            if integrate(p, y, w, d, 0.0, (0.0, 0.0))[0] < 0:
+            if advance(law, y, d, new, C) < 0:
                 return -1.0
-        stress[i, 0], stress[i, 1] = 1.5 * y[0], y[1]
+            y[:] = new
+        stress[i, 0], stress[i, 1] = y[0], y[1]
     return y[6]
 
 
@@ -78,13 +80,14 @@ class FittedLaw:
     def parameters(self, values: Variables) -> np.ndarray:
         """Parameter array of the kernels."""
         head = np.zeros(fn.ROWS_START)
-        head[[fn.SPIN, fn.TEMPERATURE, fn.TOLERANCE, fn.N_ROWS]] = 1, 293.15, np.inf, 1
+        head[[fn.SPIN, fn.TEMPERATURE, fn.N_ROWS]] = 1, 293.15, 1
         return np.concatenate([head, self.row(values)])
 
     def follow(self, values: Variables, test: Test) -> tuple[np.ndarray, float]:
         """Stress along a test, infinite if the law cannot follow it, and b* at its end."""
         stress = np.zeros_like(test.stress)
-        work = _simulate(self.parameters(values), test.strain, stress)
+        parts = Parts(self.parameters(values), np.zeros((1, 0, 2)), np.zeros(CREEP_ENTRIES))
+        work = _simulate(parts, test.strain, stress)
         if work < 0:
             stress[:] = np.inf
         return stress, work

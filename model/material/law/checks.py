@@ -11,12 +11,11 @@ Refuse = Callable[[str, str], NoReturn]  # raises InputError about an entry of t
 Functions = Callable[[np.ndarray, float], np.ndarray]  # of b*, N/mm², and a temperature, K; see `Law.functions`
 
 
-def check_combinations(data: MaterialFile, spin: bool, refuse: Refuse) -> None:
+def check_combinations(data: MaterialFile, refuse: Refuse) -> None:
     """Refuse what does not go together.
 
     Args:
         data: the material file.
-        spin: as in Law.
         refuse: Refuse.
     """
     at_all, known = data.temperatures, [at.temperature for at in data.temperatures]
@@ -28,36 +27,22 @@ def check_combinations(data: MaterialFile, spin: bool, refuse: Refuse) -> None:
         refuse("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
     if len({len(at.terms) for at in at_all}) > 1:
         refuse("temperatures", "not all have the same number of back stresses; give as many terms at each")
-    if at_all[0].terms:
-        _check_back_stresses(data, spin, refuse)
     if data.heating and data.creep and data.creep.hardening == "time":
         refuse("creep.hardening", "points that plastic work heats have no common time; give strain")
-    if spin and data.creep:
-        refuse("creep", "there is none with spin; leave out creep, or the spin")
     if data.rate:
         _check_rate(data, refuse)
 
 
-def _check_back_stresses(data: MaterialFile, spin: bool, refuse: Refuse) -> None:
-    """Several back stresses go with isotropic hardening alone."""
-    if any(at.non_normality != "none" for at in data.temperatures):
-        refuse("temperatures", "several back stresses go with normality only; make non_normality 'none'")
-    for part, word in ((data.heating, "heating"), (data.creep, "creep"), (data.rate, "rate")):
-        if part:
-            refuse(word, "goes not with several back stresses; leave it out, or give kinematic constants")
-    if spin:
-        refuse("temperatures.0.kinematic", "several back stresses have no spin; leave out the spin")
-
-
 def _check_rate(data: MaterialFile, refuse: Refuse) -> None:
-    """Yield that depends on the rate goes with hardening alone."""
-    for part, word in ((data.heating, "heating"), (data.creep, "creep")):
-        if part:
-            refuse("rate", f"goes not with {word}; leave one of both out")
+    """Overstress needs a yield surface, and flow that it limits as a whole."""
     if any(at.isotropic == "none" for at in data.temperatures):
         refuse("rate", "a material that never yields has no rate-dependent yield; leave it out")
     if any(at.non_normality != "none" for at in data.temperatures):
-        refuse("rate", "goes with normality only; make non_normality 'none', or leave rate out")
+        refuse(
+            "rate",
+            "cannot be combined with non_normality: overstress sets the rate of all plastic strain, κ ties a part "
+            "of it to the rate of stress; make non_normality 'none', or remove rate",
+        )
 
 
 ROUNDING = 1e-12  # of G, in the slope of a curve that has saturated

@@ -20,12 +20,11 @@ Functions = tuple[float, float, float, float, float, float]
 SPIN = 0  # 1: with the spin terms (5.2.33), 0: without
 TEMPERATURE = 1  # K, of points whose state holds none, at the end of the increment
 HEATING = 2  # K mm²/N: rise of temperature per plastic work b*; 0: isothermal
-TOLERANCE = 3  # relative error of stress that the Heun integrator allows in a sub-step; inf: one step
-CHANGE = 4  # K: prescribed change of temperature over the increment; 0: isothermal or adiabatic
-N_ROWS = 5  # number of temperatures
-RATE = 6  # 1/(ṗ₀ Δt) of an increment that takes the time Δt; 0: yield does not depend on the rate
-EXPONENT = 7  # m of rate-dependent yield, see `perzyna`; 0: yield never depends on the rate
-ROWS_START = 8
+CHANGE = 3  # K: prescribed change of temperature over the increment; 0: isothermal or adiabatic
+N_ROWS = 4  # number of temperatures
+RATE = 5  # 1/(ṗ₀ Δt) of an increment that takes the time Δt; 0: yield does not depend on the rate
+EXPONENT = 6  # m of rate-dependent yield, see `overstress`; 0: yield never depends on the rate
+ROWS_START = 7
 
 # A row: temperature, elastic constants, then the constants of 6.2.2 by their names there; KAPPA is a/(2G). CURVE is
 # where in `p` the points of k² begin, NODES their number, 0 if k² is that of 6.2.2.
@@ -137,16 +136,6 @@ def inside_table(p: np.ndarray, temperature: float) -> bool:
     """Whether the material's table covers `temperature`."""
     last = ROWS_START + (int(p[N_ROWS]) - 1) * ROW_LENGTH
     return p[ROWS_START] <= temperature <= p[last]
-
-
-@njit(**INLINE)
-def thermal_slope(p: np.ndarray, b: float, temperature: float) -> float:
-    """∂k²/∂T at fixed b*, N²/(mm⁴ K)."""
-    if p[N_ROWS] == 1.0:
-        return 0.0
-    o, _ = table_place(p, temperature)
-    u = o + ROW_LENGTH
-    return (row_functions(p, u, b)[0] - row_functions(p, o, b)[0]) / (p[u] - p[o])
 
 
 @njit(**KERNEL)

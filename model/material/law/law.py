@@ -14,7 +14,7 @@ from coilset.model.material.law import functions as fn
 from coilset.model.material.law.checks import check_combinations, check_functions
 from coilset.model.material.law.curve import AnyCurve
 from coilset.model.material.law.file import UNITS, Chaboche, Constants, Creep, MaterialFile, Validity
-from coilset.model.material.law.terms import BackStresses, columns
+from coilset.model.material.law.parts import CREEP_ENTRIES, Parts, further_columns
 
 CELSIUS = 273.15  # K at 0 °C
 
@@ -25,22 +25,21 @@ class Law:
     Args:
         data: the validated material file.
         spin: whether the rod's law contains the spin terms (5.2.33), see `coilset.model.material.point.spin`.
-        heun_tolerance: relative error of stress that the Heun integrator allows in a sub-step.
         file: where the data came from, for messages.
 
     Raises:
         InputError: if the functions violate a condition of the theory.
     """
 
-    def __init__(
-        self, data: MaterialFile, spin: bool = False, heun_tolerance: float = 1e-4, file: str | Path = ""
-    ) -> None:
-        self.data, self.spin, self.heun_tolerance, self.file = data, spin, heun_tolerance, str(file)
+    def __init__(self, data: MaterialFile, spin: bool = False, file: str | Path = "") -> None:
+        self.data, self.spin, self.file = data, spin, str(file)
         self._temperatures = np.array([at.temperature for at in data.temperatures])
         self._curves: dict[int, np.ndarray] = {}  # of the temperatures whose k² is given by points
         self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
-        check_combinations(data, spin, self.refuse)
-        self._terms = np.array([[(2.0 / 3.0 * one.C, one.gamma) for one in at.terms] for at in data.temperatures])
+        check_combinations(data, self.refuse)
+        self._terms = np.array(
+            [[(2.0 / 3.0 * one.C, one.gamma) for one in at.terms] for at in data.temperatures], dtype=float
+        )
         check_functions(data, self.functions, self.refuse)
 
     @property
@@ -105,7 +104,7 @@ class Law:
 
     def columns(self, components: int) -> int:
         """Length of the state of a point with 3 or 6 stresses, without what creep adds."""
-        return 2 * components + 1 + self.is_adiabatic + (columns(components, self.n_terms) if self.n_terms else 0)
+        return 2 * components + 1 + self.is_adiabatic + further_columns(components, self.n_terms)
 
     @property
     def n_terms(self) -> int:
@@ -154,7 +153,6 @@ class Law:
         head[fn.SPIN] = self.spin
         head[fn.TEMPERATURE] = temperature
         head[fn.HEATING] = self.heating
-        head[fn.TOLERANCE] = self.heun_tolerance
         head[fn.N_ROWS] = len(self._rows)
         head[fn.EXPONENT] = self.data.rate.exponent if self.data.rate else 0.0
         rows, start = self._rows.copy(), fn.ROWS_START + self._rows.size
@@ -163,10 +161,16 @@ class Law:
             start += len(points)
         return np.concatenate([head, rows.ravel(), *self._curves.values()])
 
-    def point_law(self, temperature: float | None = None) -> np.ndarray | BackStresses:
-        """What the kernels take as the law: the parameter array, alone or with several back stresses."""
+    def point_law(self, temperature: float | None = None) -> np.ndarray | Parts:
+        """What the kernels take as the law without time: the parameter array alone, if the return map suffices."""
         parameters = self.parameters(temperature)
-        return BackStresses(parameters, self._terms_at(parameters[fn.TEMPERATURE])) if self.n_terms else parameters
+        by_parts = self.n_terms or self.spin or self.is_adiabatic or self.data.rate
+        return self.parts(parameters) if by_parts else parameters
+
+    def parts(self, parameters: np.ndarray | None = None) -> Parts:
+        """What the point problem takes as the law, without time; `parameters` may be those of another temperature."""
+        plastic = self.parameters() if parameters is None else parameters
+        return Parts(plastic, self._terms.reshape(len(self._rows), -1, 2), np.zeros(CREEP_ENTRIES))
 
     def content(self) -> bytes:
         """All constants and how far they are valid, for a digest."""
@@ -227,11 +231,6 @@ class Law:
     def k_squared(self, work: npt.ArrayLike) -> np.ndarray:
         """k² at the reference temperature, N²/mm⁴."""
         return self.functions(work)[0]
-
-    def _terms_at(self, temperature: float) -> np.ndarray:
-        """⅔C and γ of the back stresses, interpolated between two temperatures, shape (terms, 2)."""
-        flat = self._terms.reshape(len(self._terms), -1)
-        return np.array([np.interp(temperature, self._temperatures, column) for column in flat.T]).reshape(-1, 2)
 
     def _row(self, i: int, at: Constants) -> np.ndarray:
         row = np.zeros(fn.ROW_LENGTH)

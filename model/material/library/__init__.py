@@ -24,7 +24,7 @@ def load(name: str | Path, **options: Any) -> Law:
 
     Args:
         name: name of a library material, as in `names()`, or path of a material file (.yaml or .yml).
-        options: `spin` and `heun_tolerance`, see `Law`.
+        options: `spin`, see `Law`.
 
     Returns:
         A `Law`.

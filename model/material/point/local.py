@@ -29,7 +29,18 @@ Neutral loading. The κ term sets in abruptly on loading. In the rod, where x di
 components, there is a narrow cone of strain increments, nearly tangential to the yield surface, for which the elastic
 response leaves the surface although the plastic one with λ ≥ 0 moves inside: neither is admissible. In the limit of
 ever smaller steps that alternate between the two, the state stays on the surface with λ = 0 and a smaller κ; `_neutral`
-finds this κ. The plastic work is then of second order, so ζ and the temperature are kept.
+finds this κ. The plastic work is then of second order, so ζ is kept.
+
+Points several at a time (`rod_rows`) start from a closed estimate of the solution, from which one or two of Newton's
+steps lead to rounding. With z = sΛ of group c and t = z/(2 + z), Padé's approximants φ ≈ (1 − z/2)/(1 + z/2) and ψ ≈
+1/(1 + z/2) make n = φ n₀ + ψ x e linear in t,
+
+    n = N − t M,   N = n₀ + x e,   M = 2 n₀ + x e,
+
+exact where n keeps its direction and length. Group a has z r in the place of z, r = sₐ/s, and so r t + r (1 − r) t² in
+the place of t, to second order. With ζ and κ as at the start of the increment, n:n and the work are polynomials of
+second degree in t, and so is the difference of n:n and k² ≈ k₀² + k²′ (b* − b*₀). Its smaller root is the estimate. The
+error of b* is of third order in the increment, that of φ of second, by ζ and κ.
 
 A point has two groups of components: `a`, a single one with modulus `ca` (the rod's axial one), and `c`, any number
 with modulus `cc`, of which only the inner products enter.
@@ -43,17 +54,23 @@ from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.exponential import decay
-from coilset.model.material.law.functions import CHANGE, Functions, functions, inside_table
+from coilset.model.material.law.functions import Functions, functions
 
 MAX_ITERATIONS = 60
 FAILED, TOO_HOT = -1, -2  # instead of a number of iterations; TOO_HOT: heated out of the material's table
 FINE = 1e-6  # relative residual below which one more Newton step ends the iteration
 COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equations are solved together
 
+GREATEST = 0.95  # of t in the estimate: z = 38
+
 Products = tuple[float, float, float]
-# What the increment starts from. na, ea: n₀ and e of group a, with the metric's weight 3/2 to be applied; dea = de/db*,
-# the thermal strain's part; nn, ne, ee: inner products of n₀ and e of group c.
-Start = namedtuple("Start", "b temperature heating ca na ea dea cc nn ne ee")
+Polynomial = tuple[float, float, float]
+# An estimate: b*, Λ, and whether the point loads plastically: the elastic response with the plastic x lies outside of
+# the yield surface, and the linear path from there to the surface does work.
+Estimate = namedtuple("Estimate", "b multiplier loads")
+# What the increment starts from. na, ea: n₀ and e of group a, with the metric's weight 3/2 to be applied; nn, ne, ee:
+# inner products of n₀ and e of group c.
+Start = namedtuple("Start", "b temperature ca na ea cc nn ne ee")
 # s, x of a group and their derivatives with respect to b*.
 Group = namedtuple("Group", "s ds x dx")
 # n = φ n₀ + y e in a group, y = ψ x, and the derivatives of φ and y with respect to b* and Λ (κ if neutral).
@@ -66,19 +83,6 @@ Correction = namedtuple("Correction", "b multiplier inverse g")
 # Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − ½ (n₀ + n):p) in (b*, Λ), or in (b*, κ) if neutral,
 # divided by its determinant.
 Local = namedtuple("Local", "iterations neutral b zeta dzeta a c r1b r1l r2b r2l")
-
-
-@njit(**INLINE)
-def surface(p: np.ndarray, b: float, temperature: float, k2: float) -> tuple[float, float]:
-    """k² at the start of the increment, and its change until the end, where it is `k2`, by the prescribed temperature.
-
-    With it `yield_crossing` keeps the elastic fraction of an increment from the surface at zero, although the surface
-    has moved away until the end.
-    """
-    if p[CHANGE] == 0.0:
-        return k2, 0.0
-    start = functions(p, b, temperature - p[CHANGE])[0]
-    return start, k2 - start
 
 
 @njit(**INLINE)
@@ -169,21 +173,9 @@ def _group_terms(t: Turn, c: float, zeta: float, dzeta: float, products: Product
 
 
 @njit(**INLINE)
-def _by_expansion(start: Start, t: Turn, zeta: float, b: float) -> tuple[float, float]:
-    """What thermal strain adds to the derivatives of group a's n:n and ½ (n₀ + n):p in b*: through e, n ∂e/∂b* = y."""
-    e, half = start.ea + start.dea * (b - start.b), 0.5 / (start.ca + zeta)
-    n = t.phi * start.na + t.y * e
-    by_e = start.na + n + t.y * (e - 2.0 * n)  # (n₀ + n):(n₀ + e − n) by e
-    return 3.0 * n * t.y * start.dea, 1.5 * half * by_e * start.dea
-
-
-@njit(**INLINE)
-def axial_products(start: Start, b: float) -> Products:
+def axial_products(start: Start) -> Products:
     """n₀:n₀, n₀:e, e:e of group a."""
-    ea = start.ea
-    if start.dea != 0.0:
-        ea += start.dea * (b - start.b)
-    return 1.5 * start.na * start.na, 1.5 * start.na * ea, 1.5 * ea * ea
+    return 1.5 * start.na * start.na, 1.5 * start.na * start.ea, 1.5 * start.ea * start.ea
 
 
 @njit(**INLINE)
@@ -193,12 +185,9 @@ def equations(start: Start, values: Functions, middle: Functions, ta: Turn, tc: 
     `values` are the material functions at the end, `middle` half way, with their slopes in the end's b*.
     """
     zeta, dzeta = middle[2], middle[3]
-    a, c = axial_products(start, b), (start.nn, start.ne, start.ee)
+    a, c = axial_products(start), (start.nn, start.ne, start.ee)
     nna, nnab, nnal, wa, wab, wal = _group_terms(ta, start.ca, zeta, dzeta, a)
     nnc, nncb, nncl, wc, wcb, wcl = _group_terms(tc, start.cc, zeta, dzeta, c)
-    if start.dea != 0.0:
-        more, work = _by_expansion(start, ta, zeta, b)
-        nnab, wab = nnab + more, wab + work
     r1, r2 = nna + nnc - values[0], b - start.b - wa - wc
     return Equations(r1, r2, nnab + nncb - values[1], nnal + nncl, 1.0 - wab - wcb, -wal - wcl, wa + wc)
 
@@ -238,9 +227,7 @@ def halved(values: Functions) -> Functions:
 @njit(**INLINE)
 def _half_way(p: np.ndarray, start: Start, b: float) -> Functions:
     """The material functions at half of the plastic work, their slopes those in the end's b*."""
-    half = 0.5 * (b - start.b)
-    temperature = start.temperature - 0.5 * p[CHANGE] + start.heating * half
-    return halved(functions(p, start.b + half, temperature))
+    return halved(functions(p, start.b + 0.5 * (b - start.b), start.temperature))
 
 
 @njit(**KERNEL)
@@ -287,7 +274,7 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
 @njit(**KERNEL)
 def _frozen(start: Start, values: Functions, ga: Group, gc: Group) -> Local:
     """At the edge of the cone spin can make the work slightly negative: b* is kept, and only n:n = k² is solved."""
-    a, c = axial_products(start, start.b), (start.nn, start.ne, start.ee)
+    a, c = axial_products(start), (start.nn, start.ne, start.ee)
     multiplier = _multiplier(ga, gc, a, c, values[0], 0.0, 1e-15)
     ta, tc = turn(Group(ga.s, 0.0, ga.x, 0.0), multiplier), turn(Group(gc.s, 0.0, gc.x, 0.0), multiplier)
     slope = _square(ta, *a)[1] + _square(tc, *c)[1]
@@ -295,36 +282,28 @@ def _frozen(start: Start, values: Functions, ga: Group, gc: Group) -> Local:
 
 
 @njit(**INLINE)
-def _failed(start: Start, why: int = FAILED) -> Local:
+def _failed(start: Start) -> Local:
     nothing = Turn(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return Local(why, False, start.b, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
-
-
-@njit(**INLINE)
-def _raised(values: Functions, factor: float) -> Functions:
-    """Material functions with k² times a factor."""
-    k2, dk2, zeta, dzeta, kappa, dkappa = values
-    return k2 * factor, dk2 * factor, zeta, dzeta, kappa, dkappa
+    return Local(FAILED, False, start.b, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(**KERNEL)
-def solve(p: np.ndarray, start: Start, static: Functions, factor: float) -> Local:
+def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
     """Solve the two local equations.
 
     Args:
         p: parameter array.
         start: the increment's plastic part, a `Start`.
-        static: `functions` where it starts.
-        factor: of k² at the end of the increment; 1, or what `perzyna` raises it by.
+        values: `functions` where it starts.
 
     Returns:
-        A `Local`; its `iterations` are -1 if there was no convergence, -2 if the temperature left the table.
+        A `Local`; its `iterations` are -1 if there was no convergence.
     """
     low = start.b
-    # max over n of ½ (n₀ + n):(n₀ + e − n) is ½ |n₀ + ½ e|²; twice that leaves room for thermal strain.
+    # twice the max over n of ½ (n₀ + n):(n₀ + e − n), which is ½ |n₀ + ½ e|²
     middle_a, middle_c = start.na + 0.5 * start.ea, start.nn + start.ne + 0.25 * start.ee
     high = low + 1.5 * middle_a * middle_a / start.ca + middle_c / start.cc
-    b, multiplier, last, values = low, 0.0, math.inf, _raised(static, factor)
+    b, multiplier, last = low, 0.0, math.inf
     for iteration in range(1, MAX_ITERATIONS):
         middle = _half_way(p, start, b)
         if not (values[0] > 0.0 and middle[0] > 0.0):
@@ -333,7 +312,7 @@ def solve(p: np.ndarray, start: Start, static: Functions, factor: float) -> Loca
         gc = group(start.cc, middle[2], middle[3], middle[4], middle[5])
         if b > start.b:
             c = (start.nn, start.ne, start.ee)
-            multiplier = _multiplier(ga, gc, axial_products(start, b), c, values[0], multiplier, COARSE)
+            multiplier = _multiplier(ga, gc, axial_products(start), c, values[0], multiplier, COARSE)
         ta, tc = turn(ga, multiplier), turn(gc, multiplier)
         at = equations(start, values, middle, ta, tc, b)
         newton = correction(at)
@@ -343,8 +322,6 @@ def solve(p: np.ndarray, start: Start, static: Functions, factor: float) -> Loca
         if iteration == 1 and newton.g > 0.0:
             return _frozen(start, values, ga, gc)
         if is_last(start, values[0], at, newton, b):
-            if start.heating > 0.0 and not inside_table(p, start.temperature + start.heating * (b - start.b)):
-                return _failed(start, TOO_HOT)
             # The last Newton step is taken in everything.
             return Local(
                 iteration,
@@ -372,5 +349,34 @@ def solve(p: np.ndarray, start: Start, static: Functions, factor: float) -> Loca
             step = 0.5 * (low + high) - b
         last = step
         b += step
-        values = _raised(functions(p, b, start.temperature + start.heating * (b - start.b)), factor)
+        values = functions(p, b, start.temperature)
     return _failed(start)
+
+
+@njit(**INLINE)
+def estimate(start: Start, k2: float, dk2: float, zeta: float, kappa: float) -> Estimate:
+    """b* and Λ at the end of the increment, by k², k²′, ζ and κ where it starts."""
+    ga, gc = group(start.ca, zeta, 0.0, kappa, 0.0), group(start.cc, zeta, 0.0, kappa, 0.0)
+    fa, wa = _polynomials(axial_products(start), ga.x, ga.s / gc.s, 0.5 / (start.ca + zeta))
+    fc, wc = _polynomials((start.nn, start.ne, start.ee), gc.x, 1.0, 0.5 / (start.cc + zeta))
+    w0, w1, w2 = wa[0] + wc[0], wa[1] + wc[1], wa[2] + wc[2]
+    outside, fall = fa[0] + fc[0] - k2, fa[1] + fc[1]
+    # A t² − 2 B t + C = 0
+    A, B, C = fa[2] + fc[2] - dk2 * w2, 0.5 * (fall + dk2 * w1), outside - dk2 * w0
+    square = B * B - A * C
+    t = C / (B + math.sqrt(square if square > 0.0 else 0.0))
+    t = t if t > 0.0 else 0.0
+    t = t if t < GREATEST else GREATEST
+    work = w0 + t * (w1 + t * w2)
+    loads = (outside >= 0.0) & (fall > 0.0) & (w0 * fall + w1 * outside >= 0.0)
+    return Estimate(start.b + (work if work > 0.0 else 0.0), 2.0 * t / ((1.0 - t) * gc.s), loads)
+
+
+@njit(**INLINE)
+def _polynomials(products: Products, x: float, r: float, half: float) -> tuple[Polynomial, Polynomial]:
+    """f₀, f₁, f₂ of a group's n:n = f₀ − f₁ t + f₂ t², and w₀, w₁, w₂ of its work w₀ + w₁ t + w₂ t²; half: ½ m."""
+    nn, ne, ee = products[0], x * products[1], x * x * products[2]  # n₀:n₀, n₀:xe, xe:xe
+    NN, NM, MM = nn + 2.0 * ne + ee, 2.0 * nn + 3.0 * ne + ee, 4.0 * (nn + ne) + ee
+    along, bend = 2.0 * products[1] + x * products[2], r * (1.0 - r)  # M:e
+    f1, f2 = 2.0 * r * NM, r * r * MM - 2.0 * bend * NM
+    return (NN, f1, f2), (half * (1.0 - x) * along, half * (f1 - r * along), -half * (f2 + bend * along))

@@ -1,8 +1,8 @@
 """The constitutive law for the full stress state.
 
 Order of components: 11, 22, 33, 12, 13, 23. Strain increments hold engineering shear strains, γ12 = 2ε12; stress and
-back stress hold the tensor's components. A point's state is a row of σ (6), B (6), b* and, with adiabatic heating,
-the temperature: 13 or 14 numbers, in N/mm² and K.
+back stress hold the tensor's components. A point's state is a row of σ (6), B (6), b* and, where each point has its
+own, the temperature, in N/mm² and K; what stands behind stays.
 
 The law is hypoelastic with the Zaremba-Jaumann rate (3.1.2): it holds in a frame that rotates with the material's spin.
 The caller works in such a frame, or rotates the point's state by the increment's rotation first.
@@ -12,9 +12,8 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.material.law.functions import CHANGE, EXPONENT, HEATING, TEMPERATURE, elasticity, functions
-from coilset.model.material.point.local import Local, Start, Turn, surface, yield_crossing
-from coilset.model.material.point.perzyna import solve_at_rate
+from coilset.model.material.law.functions import TEMPERATURE, elasticity, functions
+from coilset.model.material.point.local import Local, Start, Turn, solve, yield_crossing
 
 Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23
 Pair = tuple[float, float]
@@ -86,19 +85,18 @@ def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
 
     Args:
         p: parameter array of the law, `Law.parameters()`.
-        old: the point's state at the start, shape (13,) or, with adiabatic heating, (14,); not written.
+        old: the point's state at the start, shape (13,), or longer if the point has a temperature of its own; not
+            written.
         dD: strain increment, shape (6,), engineering shear strains.
         new: the state at the end; always fully written.
         C: dσ/dε, shape (6, 6), N/mm²; written.
 
     Returns:
-        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence, -2 if the point heated
-        itself out of the material's table (then `new` is `old`, C elastic).
+        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence (then `new` is `old`, C
+        elastic).
     """
-    thermal = old.shape[0] > 13
-    temperature = old[13] if thermal else p[TEMPERATURE]
-    heating = p[HEATING] if thermal else 0.0
-    E, G, alpha = elasticity(p, temperature - 0.5 * p[CHANGE])
+    temperature = old[13] if old.shape[0] > 13 else p[TEMPERATURE]
+    E, G, _ = elasticity(p, temperature)
     e = _elastic(old, dD, E, G, new, C)
     n0 = _active(old)
     trial = _active(new)
@@ -107,32 +105,24 @@ def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
         return 0
 
     ne, ee = _inner(n0, e), _inner(e, e)
-    k2, growth = surface(p, old[12], temperature, values[0])
-    nn = _inner(n0, n0)
-    beta = 0.0 if p[EXPONENT] > 0.0 and nn > k2 else yield_crossing(nn, ne - 0.5 * growth, ee, k2)
+    beta = yield_crossing(_inner(n0, n0), ne, ee, values[0])
     rest = 1.0 - beta
     n0 = _combined(1.0, n0, beta, e)
     nn, ne = _inner(n0, n0), _inner(n0, e)
     c = 2.0 * G
-    start = Start(old[12], temperature, heating, c, 0.0, 0.0, 0.0, c, nn, rest * ne, rest * rest * ee)
-    local = solve_at_rate(p, start, values)
+    start = Start(old[12], temperature, c, 0.0, 0.0, c, nn, rest * ne, rest * rest * ee)
+    local = solve(p, start, values)
     if local.iterations < 0:
         for i in range(new.shape[0]):
             new[i] = old[i]
         return local.iterations
-    if local.neutral:
-        heating = 0.0
     t, m = local.c, 1.0 / (c + local.zeta)
     pl = _combined(m * (1.0 - t.phi), n0, m * rest * (1.0 - t.y), e)
-    expansion = E * G / (3.0 * G - E) * alpha * heating  # of the stress by thermal strain, per b*: 3Kα dT/db*
-    pressure = expansion * (local.b - old[12])
     for i in range(6):
-        new[i] -= c * pl[i] + (pressure if i < 3 else 0.0)
+        new[i] -= c * pl[i]
         new[6 + i] += local.zeta * pl[i]  # (3.1.8)
     new[12] = local.b
-    if thermal:
-        new[13] = temperature + heating * (local.b - old[12])
-    _tangent(local, n0, e, beta, (ne, ee, ne - 0.5 * growth), t, m, c, expansion, C)
+    _tangent(local, n0, e, beta, (ne, ee), t, m, c, C)
     return local.iterations
 
 
@@ -147,18 +137,17 @@ def _tangent(
     n0: Six,
     e: Six,
     beta: float,
-    products: tuple[float, float, float],
+    products: tuple[float, float],
     t: Turn,
     m: float,
     c: float,
-    expansion: float,
     C: np.ndarray,
 ) -> None:
     """Subtract the effect of the plastic strain from the elastic tangent in C.
 
     Every vector here is a combination of n₀ and of the increment's e and is written as the pair of its two factors.
     """
-    ne, ee, crossing = products
+    ne, ee = products
     rest, phi, y = 1.0 - beta, t.phi, t.y
     n, both = (phi, y * rest), (1.0 + phi, y * rest)
     pl = (m * (1.0 - phi), m * rest * (1.0 - y))
@@ -167,10 +156,10 @@ def _tangent(
     r1e, r2e = _pair(2.0 * y, n, 0.0, n), _pair(0.5 * y, pl, 0.5 * m * (1.0 - y), both)
     bn, be = _pair(-local.r1l, r2n, -local.r2l, r1n), _pair(-local.r1l, r2e, -local.r2l, r1e)
     ln, le = _pair(local.r1b, r2n, local.r2b, r1n), _pair(local.r1b, r2e, local.r2b, r1e)
-    # The elastic fraction β follows e, too: |n₀ + β e|² = k² + β Δk².
+    # The elastic fraction β follows e, too: |n₀ + β e|² = k².
     gb, gl, gbeta = _pair(beta, bn, rest, be), _pair(beta, ln, rest, le), (0.0, 0.0)
-    if beta > 0.0 and crossing > 0.0:
-        gbeta = (-beta / crossing, 0.0)
+    if beta > 0.0 and ne > 0.0:
+        gbeta = (-beta / ne, 0.0)
         gb = _pair(1.0, gb, (bn[0] - be[0]) * ne + (bn[1] - be[1]) * ee, gbeta)
         gl = _pair(1.0, gl, (ln[0] - le[0]) * ne + (ln[1] - le[1]) * ee, gbeta)
     fb, fl = _pair(local.dzeta, pl, 1.0, (t.phi_b, t.y_b * rest)), (t.phi_l, t.y_l * rest)
@@ -188,8 +177,6 @@ def _tangent(
         along_e = left_e[0] * db + left_e[1] * dl + left_e[2] * dbeta
         for i in range(6):
             C[i, j] -= along_n * n0[i] + along_e * e[i]
-        for i in range(3):
-            C[i, j] -= c * expansion * db
     for i in range(3):
         C[i, i] -= identity
         C[3 + i, 3 + i] -= 0.5 * identity

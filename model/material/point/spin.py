@@ -27,8 +27,9 @@ from collections import namedtuple
 from numba import njit
 
 from coilset.model.base.kernel import INLINE
+from coilset.model.material.point.local import yield_crossing
+from coilset.model.material.point.rod import Vector, active, add, inner, scaled
 
-Vector = tuple[float, float, float]
 Columns = tuple[Vector, Vector, Vector]
 # sin θ/θ, (1 − cos θ)/θ², and twice their derivatives with respect to θ².
 Ratios = namedtuple("Ratios", "S K dS dK")
@@ -40,6 +41,22 @@ Crossing = namedtuple("Crossing", "beta d_beta")
 WHOLE = Crossing(1.0, (0.0, 0.0, 0.0))
 STRESS, BACK = 0.5, 0.75  # c² of a turn, see _turn
 SMALL = 1e-2  # θ² below which the series are exact to rounding
+
+
+@njit(**INLINE)
+def crossing_of_spin(s: Vector, B: Vector, k2: float, E: float, G: float, e: Vector) -> Crossing:
+    """Where the elastic path leaves the yield surface; e is the increment of the active deviator."""
+    n = active(s, B)
+    nn, ne, ee = inner(n, n), inner(n, e), inner(e, e)
+    if nn + 2.0 * ne + ee <= k2 * (1.0 + 1e-12):
+        return WHOLE
+    beta = yield_crossing(nn, ne, ee, k2)
+    at = add(n, scaled(e, beta))
+    slope = inner(at, e)
+    if beta <= 0.0 or beta >= 1.0 or slope <= 0.0:
+        return Crossing(beta, (0.0, 0.0, 0.0))
+    f = -beta / slope
+    return Crossing(beta, (f * E * at[0], 2.0 * f * G * at[1], 2.0 * f * G * at[2]))
 
 
 @njit(**INLINE)

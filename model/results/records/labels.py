@@ -1,6 +1,7 @@
 """Numbers of any size in texts, with few digits."""
 
 import math
+from collections.abc import Mapping
 
 MOST_DECIMALS = 6
 
@@ -17,3 +18,46 @@ def plain(value: float, digits: int = 4) -> str:
     text = f"{value:,.{decimals(value, digits)}f}"
     text = text.rstrip("0").rstrip(".") if "." in text else text
     return "0" if text == "-0" else text
+
+
+def within(value: float | None, error: float | None, unit: str, digits: int) -> str:
+    """A value with its unit in the digits that its error allows, `13.28 ± 0.02 mm`, at most `digits` decimals.
+
+    Args:
+        value: None: there is none.
+        error: its size, rounded up to one digit, or two that begin with 1; None: not known, and not shown.
+        unit: of both.
+        digits: decimals.
+    """
+    if value is None:
+        return "none"
+    if error is None or not math.isfinite(error):
+        return f"{round(value, digits) + 0.0:.{digits}f} {unit}"
+    error = max(error, 10.0**-digits)
+    first = math.floor(math.log10(error))
+    place = min(digits, -first + (error < 2.0 * 10.0**first))
+    error = math.ceil(error * 10.0**place - 1e-9) / 10.0**place
+    return f"{round(value, place) + 0.0:.{max(place, 0)}f} ± {error:.{max(place, 0)}f} {unit}"
+
+
+NUMBERS = {"force_N": "force", "set_mm": "set", "residual_shear_inside_MPa": "residual stress"}
+"""Numbers whose errors are estimated, in words."""
+CAUSES = {"steps": "steps", "mesh": "mesh", "section": "section points", "contact": "contact"}
+"""Causes of these errors, in words."""
+
+
+def largest_errors(errors: Mapping[str, Mapping[str, float | None]] | None) -> str:
+    """Which cause has the largest part in which number, `mesh (force, set), steps (residual stress)`.
+
+    Args:
+        errors: `estimated_errors` of a summary; None: empty.
+    """
+    found: dict[str, list[str]] = {}
+    for number, word in NUMBERS.items() if errors else ():
+        parts = {cause: (errors or {})[cause][number] or 0.0 for cause in CAUSES}
+        largest = max(parts, key=lambda cause: parts[cause])
+        if parts[largest]:
+            found.setdefault(CAUSES[largest], []).append(word)
+    if len(found) == 1:
+        return next(iter(found))
+    return ", ".join(f"{cause} ({', '.join(words)})" for cause, words in found.items())

@@ -40,8 +40,10 @@ class Step:
         lift_off_mm: clearance between the wire and the seat that it has left; 0 while both seats press.
         least_rise: minimum rise from a coil to the next, over the rise at which they touch; None where coils pass
             each other by their shape, or there is only one.
-        estimated_force_error_N: accumulated error of the force due to the step size, and
-            estimated_height_error_mm of the height at this force; None where it is unknown.
+        steps_force_error_N: what the length of the steps up to here has left wrong in the force, true value minus
+            result, and steps_height_error_mm in the height at which this force would be; None where it is not known.
+        estimated_force_error_N, estimated_height_error_mm: sizes of both errors by all causes, see RunErrors; None
+            where one is not known, and until the run is complete.
         hours: since the start, of a material that creeps.
         temperature_K: of the spring; at its start where plastic work heats it.
         load_loss_percent: of the force with which time began to pass, at constant height; None where no time passes.
@@ -69,6 +71,8 @@ class Step:
     plastic_work_max_N_per_mm2: float = 0.0
     lift_off_mm: float = 0.0
     least_rise: float | None = None
+    steps_force_error_N: float | None = None
+    steps_height_error_mm: float | None = None
     estimated_force_error_N: float | None = None
     estimated_height_error_mm: float | None = None
     hours: float = 0.0
@@ -232,11 +236,6 @@ class ContactRecord:
     end: str | None
     wire_turns: np.ndarray
 
-    @property
-    def turns_from_tip(self) -> np.ndarray:
-        """Turns from the wire's tip at a seat's end to each point, shape (m,)."""
-        return np.abs(self.wire_turns - self.wire_turns[0 if self.end == "bottom" else -1])
-
 
 @dataclass(frozen=True)
 class Limits:
@@ -344,6 +343,48 @@ class BucklingMode:
 
 
 @dataclass(frozen=True)
+class Errors:
+    """Sizes of the errors by one cause; None where they are not known or there is no such number.
+
+    Attributes:
+        force_N: of the maximum force; set_mm: of the set; residual_shear_inside_MPa: of the residual shear stress.
+    """
+
+    force_N: float | None
+    set_mm: float | None
+    residual_shear_inside_MPa: float | None
+
+
+@dataclass(frozen=True)
+class RunErrors:
+    """Estimated errors of a run by their causes, see coilset.model.run.companion.
+
+    Attributes:
+        steps: the length of the steps; mesh: that of the elements; section: the points of the sections; contact: the
+            stiffness of seats and coils against penetration.
+    """
+
+    steps: Errors
+    mesh: Errors
+    section: Errors
+    contact: Errors
+
+    @cached_property
+    def total(self) -> Errors:
+        """All of them together, as if they had the same sign; None where one is not known."""
+
+        def together(name: str) -> float | None:
+            values = [getattr(getattr(self, cause.name), name) for cause in fields(self)]
+            return None if None in values else float(sum(values))
+
+        return Errors(*(together(item.name) for item in fields(Errors)))
+
+    def largest(self, name: str) -> str:
+        """The cause of the largest error of a number, by its name in Errors."""
+        return max((cause.name for cause in fields(self)), key=lambda cause: getattr(getattr(self, cause), name) or 0.0)
+
+
+@dataclass(frozen=True)
 class Result:
     """Results of a run so far; `complete` is False if it ended before its program did.
 
@@ -354,6 +395,7 @@ class Result:
         rate: initial rate, N/mm; NaN where no equilibrium was found for it.
         warnings: Warnings of moments that its other records do not show.
         mode: BucklingMode of a spring that is slender enough to buckle; else None.
+        errors: RunErrors of a complete run; None where they are not estimated.
     """
 
     steps: tuple[Step, ...] = ()
@@ -364,6 +406,7 @@ class Result:
     complete: bool = False
     warnings: tuple[Warning, ...] = ()
     mode: BucklingMode | None = field(default=None, repr=False)
+    errors: RunErrors | None = None
 
     @property
     def greatest_force(self) -> float:

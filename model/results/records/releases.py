@@ -29,7 +29,7 @@ class Release:
     @property
     def set_error(self) -> float | None:
         """Estimated error of the set by the steps' length, true value minus result, mm; None if it is unknown."""
-        error = self.step.estimated_height_error_mm
+        error = self.step.steps_height_error_mm
         return None if error is None else -error
 
 

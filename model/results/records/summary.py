@@ -9,7 +9,7 @@ import numpy as np
 
 from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates
-from coilset.model.results.records.record import Result, Setup, Snapshot
+from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
 from coilset.model.results.records.releases import Release, releases
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
@@ -56,7 +56,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         **peaks(setup, "residual_", [shot] if shot else []),
         **peaks(setup, "", result.snapshots),
         **plastic_work(setup, result),
-        **step_errors(result, release),
+        **estimated_errors(result),
         load_loss_percent=load_loss(result),
         coiling_diameter_mm=setup.coiling_diameter,
         measured_axis_offset_mm=axis.offset if axis else None,
@@ -95,12 +95,15 @@ def _release(release: Release) -> dict[str, Any]:
     }
 
 
-def step_errors(result: Result, release: Release | None) -> dict[str, Any]:
-    """Errors due to the step size: of the maximum force, and of the set."""
-    top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
+def estimated_errors(result: Result) -> dict[str, Any]:
+    """Errors of maximum force, set and residual shear: in total, and by their causes; None where not estimated."""
+    errors = result.errors
+    total = Errors(None, None, None) if errors is None else errors.total
     return {
-        "estimated_force_error_N": None if top is None else top.estimated_force_error_N,
-        "estimated_set_error_mm": None if release is None else release.set_error,
+        "estimated_force_error_N": total.force_N,
+        "estimated_set_error_mm": total.set_mm,
+        "estimated_residual_shear_inside_error_MPa": total.residual_shear_inside_MPa,
+        "estimated_errors": errors,
     }
 
 

@@ -5,6 +5,7 @@ from types import UnionType
 from typing import Any, get_args
 
 from coilset.model.base.warning import Warning
+from coilset.model.results.records.record import RunErrors
 
 
 def entry(unit: str, text: str, of_slice: bool = True) -> Any:
@@ -108,10 +109,20 @@ class Summary:
     plastic_work_known_to_N_per_mm2: float = entry("N/mm²", "limit up to which the constants of the material are valid")
     estimated_force_error_N: float | None = entry(
         "N",
-        "error of the maximum force due to the step size: true value minus result; empty with `accuracy: none`",
+        "estimated size of the error of the maximum force by steps, mesh, section rule and contact together; `null` "
+        "where one of them is not known, and with `accuracy: none`",
         of_slice=False,
     )
-    estimated_set_error_mm: float | None = entry("mm", "the same in the set", of_slice=False)
+    estimated_set_error_mm: float | None = entry("mm", "the same of the set", of_slice=False)
+    estimated_residual_shear_inside_error_MPa: float | None = entry(
+        "MPa", "the same of the residual shear stress at the inside of the coil", of_slice=False
+    )
+    estimated_errors: RunErrors | None = entry(  # noqa: RUF009 - it is frozen
+        "",
+        "the parts of these by their causes `steps`, `mesh`, `section` and `contact`: each has `force_N`, `set_mm` and "
+        "`residual_shear_inside_MPa`; `null` where not estimated",
+        of_slice=False,
+    )
     load_loss_percent: float | None = entry(
         "%",
         "part of its force that the spring had lost when time last passed at constant height; `null` if none did",

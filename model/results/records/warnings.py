@@ -6,6 +6,7 @@ from math import isfinite
 
 from coilset.model.base.warning import Warning
 from coilset.model.results.records.buckling import buckling, snapped
+from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 from coilset.model.results.records.releases import FREE, last_release
 from coilset.model.section import surface
@@ -201,7 +202,7 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     if asked is None or top is None or not top.force_N:
         return
-    if top.estimated_force_error_N is None:
+    if top.steps_force_error_N is None:
         if not abs(top.force_N) <= FREE * result.rate * setup.spring.free_length:  # also where the rate is not known
             message = (
                 f"the step-size error of the maximum force could not be estimated ({_place(top)}); "
@@ -209,7 +210,7 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
             )
             yield Warning("unknown error", _place(top), message, None, asked)
         return
-    worst, place, of = abs(top.estimated_force_error_N / top.force_N), _place(top), ("the force", "")
+    worst, place, of = abs(top.steps_force_error_N / top.force_N), _place(top), ("the force", "")
     release = last_release(setup, result)
     error = None if release is None else release.set_error
     noticed = error is not None and abs(error) > NOTICED * setup.spring.free_length
@@ -218,6 +219,46 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     warning = accuracy_warning(worst, asked, place, *of)
     if warning is not None:
         yield warning
+
+
+MORE = {
+    "mesh": "more mesh.elements_per_turn reduce it",
+    "section": "more points, mesh.section.radial and angular, reduce it",
+    "contact": "a greater contact.bedding reduces it",
+    "steps": "a smaller accuracy or more steps reduce it",
+}
+"""What makes an error smaller, by its cause."""
+
+
+def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
+    """The numbers whose error by all causes is above the accuracy that was asked for, unless the steps alone are."""
+    asked, errors = setup.limits.accuracy, result.errors
+    if asked is None or errors is None or any(_step_error(setup, result)):
+        return
+    release = last_release(setup, result)
+    values = {"force_N": result.greatest_force, "set_mm": 0.0 if release is None else release.set}
+    noticed = {"force_N": 0.0, "set_mm": NOTICED * setup.spring.free_length}
+    worst: dict[str, float] = {}
+    for name, value in values.items():
+        error = getattr(errors.total, name)
+        if value > 0.0 and error is None:
+            message = (
+                f"the error of the {NUMBERS[name]} by mesh, section points and contact could not be estimated; compare "
+                "with a run of more mesh.elements_per_turn"
+            )
+            yield Warning("unknown error", "mesh", message, None, asked)
+            return
+        if value > 0.0 and error > max(asked * value, noticed[name]):
+            worst[name] = error / value
+    if worst:
+        largest = max(worst, key=lambda name: worst[name])
+        cause = errors.largest(largest)
+        which = " and ".join(f"the {NUMBERS[name]} by {100 * part:.2g} %" for name, part in worst.items())
+        message = (
+            f"{which} may be off, mostly because of the {CAUSES[cause]}, more than the case's accuracy of "
+            f"{100 * asked:.2g} %; {MORE[cause]}"
+        )
+        yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], asked)
 
 
 def _longer(setup: Setup, result: Result) -> Iterator[Warning]:
@@ -246,4 +287,4 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
-FOUND: tuple[Check, ...] = (_strength, _step_error, _presetting, _longer)
+FOUND: tuple[Check, ...] = (_strength, _step_error, _whole_error, _presetting, _longer)

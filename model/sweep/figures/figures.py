@@ -30,6 +30,8 @@ def chosen(plan: Plan) -> list[Any]:
         return spec.figures
     if spec.design == "one_at_a_time":
         return [sp.Convergence(kind="convergence")]
+    if spec.model == "uniform_rod":  # without characteristics
+        return [sp.Scatter(kind="scatter"), sp.Sensitivity(kind="sensitivity")]
     family = sp.Family(kind="characteristics", colour=names[0])
     if spec.design not in sp.SAMPLES and len(names) <= 3:
         roles = dict(zip(("x", "colour", "panels"), names, strict=False))

@@ -1,13 +1,14 @@
-"""Cylinder, cone and barrel compressed to block and released: no step fails, and the meshes agree
+"""Cylinder and cone compressed to block, a barrel nearly so, and released: no step fails, and the meshes agree
 
-The three springs of `examples/springs` run at 16, 32 and 64 elements per turn, both with twelve equal steps each way
-and with automatic ones. A failed solve is repeated from rest, or its step is cut; both are counted. Steps that were
-solved but cut because their error was too large or their state unstable are not. The table also shows how often
-Newton's method did not converge within a step and a part of it was balanced first. The contact stiffness, E/40, is the
-same for all meshes, so that finer ones converge to one state. Two things are judged: the set, which must change by less
-than 1 % from 32 to 64 elements, and the characteristic at the heights of the equal steps, whose change from 32 to 64
-must be below 1 % of the maximum force and less than from 16 to 32. The force at block depends on the positions of
-several hundred contacts to within a few thousandths of a millimetre: it converges last.
+The barrel stops at 30 mm, 6.5 mm above its block: from 28 mm on its coils slip past each other without friction, and
+its path forks. The three springs of `examples/springs` run at 16, 32 and 64 elements per turn, both with twelve equal
+steps each way and with automatic ones. A failed solve is repeated from rest, or its step is cut; both are counted.
+Steps that were solved but cut because their error was too large or their state unstable are not. The table also shows
+how often Newton's method did not converge within a step and a part of it was balanced first. The contact stiffness,
+E/40, is the same for all meshes, so that finer ones converge to one state. Two things are judged: the set, which must
+change by less than 1 % from 32 to 64 elements, and the characteristic at the heights of the equal steps, whose change
+from 32 to 64 must be below 1 % of the maximum force and less than from 16 to 32. The force at block depends on the
+positions of several hundred contacts to within a few thousandths of a millimetre: it converges last.
 """
 
 import logging
@@ -24,7 +25,7 @@ from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
 from coilset.verification.study import Study
 
-SPRINGS = ("cylinder", "cone", "barrel")
+SPRINGS = {"cylinder": "block", "cone": "block", "barrel": "{height: 30.0}"}  # and where they are compressed to
 MESHES = (16, 32, 64)
 FAILED = ("no equilibrium from the last step's direction", "cut to")  # in the log of the step control
 SOLVED = ("its error is estimated", "the equilibrium is unstable")
@@ -49,6 +50,7 @@ def press(name: str, mesh: int, automatic: bool) -> tuple[Analysis, dict[str, An
     """Run an example; the Analysis, its summary, and the Counter of its solves."""
     steps = "auto" if automatic else 12
     settings = [f"mesh.elements_per_turn={mesh}", *(f"loading.{phase}.steps={steps}" for phase in (0, 1))]
+    settings.append(f"loading.0.to={SPRINGS[name]}")
     analysis, counter = Analysis(read_case(EXAMPLES / "springs" / f"{name}.yaml", settings)), Counter()
     logger = logging.getLogger("coilset.steps")
     level = logger.level
@@ -93,7 +95,7 @@ def run(study: Study) -> None:
                 curves[name, mesh, automatic] = analysis, summary
         compare(study, name, {mesh: curves[name, mesh, False] for mesh in MESHES})
     columns = ["spring", "rods per turn", "steps", "steps done", "iterations", "in parts", "set, mm", "block force, N"]
-    study.table("to block and back", columns, rows)
+    study.table("down and back", columns, rows)
     draw(study, curves)
 
 

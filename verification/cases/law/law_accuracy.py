@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
 from coilset.model.material import library, points
+from coilset.verification.references import heun
 from coilset.verification.study import Study
 
 FAST = True
@@ -32,13 +33,13 @@ METHODS = {
 
 def follow(path: list[tuple[float, float, float]], integrator: str, tolerance: float, increment: float) -> np.ndarray:
     """States at the marks; no spin, so that the rod's torsion is pure."""
-    law = library.load("ck15", spin=False, heun_tolerance=tolerance)
+    law, tolerances = library.load("ck15"), {"tolerance": tolerance} if integrator == "heun" else {}
     state, states = points.initial_state(law, 1), []
     for piece in np.array(path):
         n = int(np.ceil(np.abs(piece).max() / MARKS / increment - 1e-9))
         for _ in range(MARKS):
             for _ in range(n):
-                state = points.update(law, state, piece[None] / (n * MARKS), integrator)[0]
+                state = heun.UPDATES[integrator](law, state, piece[None] / (n * MARKS), **tolerances)[0]
             states.append(state[0])
     return np.array(states)
 

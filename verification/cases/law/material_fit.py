@@ -18,6 +18,7 @@ from coilset.model.base.style import STYLE
 from coilset.model.material import library, programs
 from coilset.model.material.identification import fit
 from coilset.model.material.identification.experiments import Test
+from coilset.verification.references import heun
 from coilset.verification.study import Study
 
 NOISE = 0.01  # of the maximum stress of each test
@@ -37,10 +38,10 @@ PROGRAMS = {  # targets and increments
 
 def clean_tests() -> Iterator[Test]:
     """The tests without noise, after the unloaded start."""
-    law = library.load("ck15", spin=True, heun_tolerance=1e-6)
+    law = library.load("ck15", spin=True)
     for name, pieces in PROGRAMS.items():
         steps = [{"to": to, "increments": increments} for to, increments in pieces]
-        history = programs.run(law, programs.Program.model_validate({"name": name, "steps": steps}), "heun")
+        history = heun.run(law, programs.Program.model_validate({"name": name, "steps": steps}), 1e-6)
         yield Test(name, history.strain[1:, :2], history.stress[1:, :2])
 
 

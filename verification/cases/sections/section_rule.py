@@ -19,7 +19,7 @@ from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
 from coilset.model.case import read_case
-from coilset.model.case.case import SectionSpec
+from coilset.model.case.case import ANGLES, SectionSpec
 from coilset.model.material import library, points
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.summary import summarise
@@ -31,7 +31,7 @@ from coilset.verification.study import Study
 FAST = False
 Rule = tuple[int, int, bool]  # rings, angles, staggered
 SPEC = SectionSpec()
-DEFAULT: Rule = (SPEC.radial, SPEC.angular, SPEC.staggered)
+DEFAULT: Rule = (SPEC.radial, ANGLES, SPEC.staggered)
 RULES: tuple[Rule, ...] = ((4, 12, False), DEFAULT)
 PLANE = ("closed_and_ground", "cone", "cylinder")  # springs that are also compressed with the thesis's section
 LIMIT: Rule = (12, 36, True)

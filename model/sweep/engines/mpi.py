@@ -3,22 +3,21 @@
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
 
 from coilset.model.base.errors import InputError
+from coilset.model.sweep.engines.pool import Pool, Record, Task
 from coilset.model.sweep.evaluate import evaluate_in_worker
-from coilset.model.sweep.pools import Pool
 
 _group: MPI.Comm = None  # communicator of the ranks that share a case with this one
 
 
-def solve_in_group(task: dict[str, Any]) -> dict[str, Any]:
-    """On the first rank of a group: pass the task to the group's other ranks, and solve it with them."""
-    _group.bcast(task)
-    return evaluate_in_worker(comm=_group, **task)
+def solve_in_group(tasks: list[Task]) -> list[Record]:
+    """On the first rank of a group: pass the tasks to the group's other ranks, and solve them with these."""
+    _group.bcast(tasks)
+    return evaluate_in_worker(tasks, _group)
 
 
 @contextmanager
@@ -50,9 +49,9 @@ def mpi_pool(comm: MPI.Comm, ranks_per_case: int) -> Iterator[Pool | None]:
     leaders = comm.Split(0 if first else 1, comm.rank)
     if first:
         with MPICommExecutor(leaders, root=0) as executor:
-            yield None if executor is None else Pool(lambda task: executor.submit(solve_in_group, task), groups)
+            yield None if executor is None else Pool(lambda tasks: executor.submit(solve_in_group, tasks), groups)
         _group.bcast(None)
     else:
-        while not idle and (task := _group.bcast(None)) is not None:
-            evaluate_in_worker(comm=_group, **task)
+        while not idle and (tasks := _group.bcast(None)) is not None:
+            evaluate_in_worker(tasks, _group)
         yield None

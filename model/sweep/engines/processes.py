@@ -1,20 +1,18 @@
-"""Where the cases of a sweep run: processes of this machine, or the ranks of an MPI job.
-
-Both provide `submit(task)`, which returns a future of the record, and `workers`, the number of cases run at a time.
-The processes are started before the sweep is read and checked, and load their libraries meanwhile.
-"""
+"""Cases in processes of this machine, which are started before the sweep is read and load their libraries meanwhile."""
 
 import json
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Self
+from typing import Self
 
-WORKER = [sys.executable, "-m", "coilset.model.sweep.worker"]
+from coilset.model.sweep.engines.pool import Pool, Record, Task
+
+WORKER = [sys.executable, "-m", "coilset.model.sweep.engines.worker"]
 
 
 class Process:
@@ -39,11 +37,11 @@ class Process:
             start_new_session=True,
         )
 
-    def run(self, task: dict[str, Any], log: str) -> dict[str, Any]:
-        """The record of a task; the case fails if the process dies.
+    def run(self, tasks: list[Task], log: str) -> list[Record]:
+        """The records of tasks; if the process dies, each is run on its own, and the case that it dies of fails.
 
         Args:
-            task: arguments of `evaluate`.
+            tasks: arguments of `evaluate`.
             log: file for the process's output from the first task on.
         """
         if self.process is None:
@@ -55,7 +53,7 @@ class Process:
             if not self.log:
                 self.log = log
                 process.stdin.write(json.dumps(log) + "\n")
-            process.stdin.write(json.dumps(task) + "\n")
+            process.stdin.write(json.dumps(tasks) + "\n")
             process.stdin.flush()
             answer = process.stdout.readline()
         except BrokenPipeError:
@@ -64,14 +62,10 @@ class Process:
             return json.loads(answer)
         status = process.wait()
         self.close()
+        if len(tasks) > 1:
+            return [record for task in tasks for record in self.run([task], log)]
         how = f"signal {-status}" if status < 0 else f"exit code {status}"
-        return {
-            "status": "failed",
-            "reason": f"the process of this case ended with {how}",
-            "summary": {},
-            "steps": {},
-            "seconds": None,
-        }
+        return [failed(tasks[0], f"the process of this case ended with {how}")]
 
     def close(self) -> None:
         """Kill the process."""
@@ -82,6 +76,11 @@ class Process:
             for pipe in (process.stdin, process.stdout):
                 if pipe is not None:
                     pipe.close()
+
+
+def failed(task: Task, reason: str) -> Record:
+    """The record of a case without results."""
+    return {"key": task.get("key"), "status": "failed", "reason": reason, "summary": {}, "steps": {}, "seconds": None}
 
 
 class Workers:
@@ -106,7 +105,7 @@ class Workers:
             process.close()
 
     @contextmanager
-    def pool(self, log: Path) -> Iterator["Pool"]:
+    def pool(self, log: Path) -> Iterator[Pool]:
         """Pool of these processes, whose output goes to the end of a file; once."""
         own, free = threading.local(), list(self._processes)
 
@@ -115,17 +114,13 @@ class Workers:
 
         executor = ThreadPoolExecutor(self.jobs, initializer=begin)
 
-        def submit(task: dict[str, Any]) -> Future[dict[str, Any]]:
-            return executor.submit(lambda: own.process.run(task, str(log)))
+        def run(tasks: list[Task]) -> list[Record]:
+            return own.process.run(tasks, str(log))
+
+        def submit(tasks: list[Task]) -> Future[list[Record]]:
+            return executor.submit(run, tasks)
 
         try:
             yield Pool(submit, self.jobs)
         finally:
             executor.shutdown(wait=False, cancel_futures=True)
-
-
-class Pool:
-    """The workers of a sweep, for the process that leads it."""
-
-    def __init__(self, submit: Callable[[dict[str, Any]], Future[dict[str, Any]]], workers: int) -> None:
-        self.submit, self.workers = submit, workers

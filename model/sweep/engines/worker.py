@@ -1,7 +1,7 @@
-"""A process that runs cases one after another: JSON lines in, JSON lines out; it ends when its input ends.
+"""A process that runs cases: each line in is a JSON list of tasks, each line out the list of their records.
 
 The first line in names the file for its other output. Imports, compiled forms and compiled kernels are reused from case
-to case. It ends with the process that started it, however that ends.
+to case. It ends when its input ends, and with the process that started it, however that ends.
 """
 
 import json
@@ -32,8 +32,8 @@ def main() -> None:
     for output in (1, 2):
         os.dup2(log, output)
     for line in sys.stdin:
-        record = evaluate_in_worker(comm=MPI.COMM_SELF, **json.loads(line))
-        answers.write(json.dumps(record, allow_nan=False) + "\n")
+        records = evaluate_in_worker(json.loads(line), MPI.COMM_SELF)
+        answers.write(json.dumps(records, allow_nan=False) + "\n")
         answers.flush()
 
 

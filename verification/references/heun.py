@@ -12,29 +12,47 @@ mean stress (in the rod it follows from t and is not used).
 """
 
 import math
+from functools import partial
 
 import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import KERNEL
+from coilset.model.material import programs
 from coilset.model.material.law.functions import (
     CHANGE,
     HEATING,
+    N_ROWS,
+    ROW_LENGTH,
     SPIN,
     TEMPERATURE,
-    TOLERANCE,
     elasticity,
     functions,
     inside_table,
-    thermal_slope,
+    row_functions,
+    table_place,
 )
+from coilset.model.material.law.law import Law
 from coilset.model.material.point.local import TOO_HOT, yield_crossing
+from coilset.model.material.points import refuse
+from coilset.model.material.points import update as update_points
+from coilset.model.material.programs import History, Program
 
 MAX_SUBSTEPS = 20000
 MAX_CUTS = 8
 ROD_METRIC = (1.5, 2.0, 2.0)
 SOLID_METRIC = (1.0, 1.0, 1.0, 2.0, 2.0, 2.0)
 ELASTIC, PLASTIC, BY_LOADING = 0, 1, 2
+
+
+@njit(**KERNEL)
+def _thermal_slope(p: np.ndarray, b: float, temperature: float) -> float:
+    """∂k²/∂T at fixed b*, N²/(mm⁴ K)."""
+    if p[N_ROWS] == 1.0:
+        return 0.0
+    o, _ = table_place(p, temperature)
+    u = o + ROW_LENGTH
+    return (row_functions(p, u, b)[0] - row_functions(p, o, b)[0]) / (p[u] - p[o])
 
 
 @njit(**KERNEL)
@@ -84,13 +102,13 @@ def _rates(
     w: np.ndarray,
     d: np.ndarray,
     volume: float,
-    warming: tuple[float, float],
+    warming: tuple[float, float, float],
     mode: int,
     rate: np.ndarray,
 ) -> bool:
     """Rates of y for the strain rate `d` (tensor components, deviatoric in the solid) and the rate of volume strain.
 
-    `warming` is the pair of the rise of temperature per plastic work and of its prescribed rate.
+    `warming` is the rise of temperature per plastic work, its prescribed rate, and the tolerance of `integrate`.
 
     Returns:
         Whether the point loads plastically.
@@ -100,7 +118,7 @@ def _rates(
     E, G, alpha = elasticity(p, y[2 * m + 1])
     cc = 2.0 * G
     ca = E / 1.5 if rod else cc
-    heating, change = warming
+    heating, change, _ = warming
     _, dk2, zeta, _, kappa, _ = functions(p, y[2 * m], y[2 * m + 1])
     for i in range(2 * m + 2):
         rate[i] = 0.0
@@ -123,7 +141,7 @@ def _rates(
         rate[i] += (ca if i == 0 else cc) * d[i]
     if change != 0.0:  # the yield surface itself moves: n:ṅ = ½ (k²′ ḃ* + ∂k²/∂T Ṫ)
         rate[2 * m + 1] = change
-        spin -= 0.5 * change * thermal_slope(p, y[2 * m], y[2 * m + 1])
+        spin -= 0.5 * change * _thermal_slope(p, y[2 * m], y[2 * m + 1])
     bulk = E * G / (3.0 * (3.0 * G - E))
     rate[2 * m + 2] = bulk * volume
     loading = (2.0 - kappa * dk2) * (axial + rest + spin) > 0.0  # (5.2.41)
@@ -166,7 +184,7 @@ def _heun(
     w: np.ndarray,
     d: np.ndarray,
     volume: float,
-    warming: tuple[float, float],
+    warming: tuple[float, float, float],
     h: float,
     mode: int,
     work: np.ndarray,
@@ -201,7 +219,7 @@ def _elastic_part(
     w: np.ndarray,
     d: np.ndarray,
     volume: float,
-    warming: tuple[float, float],
+    warming: tuple[float, float, float],
     h: float,
     work: np.ndarray,
 ) -> float:
@@ -229,7 +247,7 @@ def _elastic_part(
 
 @njit(**KERNEL)
 def integrate(
-    p: np.ndarray, y: np.ndarray, w: np.ndarray, d: np.ndarray, volume: float, warming: tuple[float, float]
+    p: np.ndarray, y: np.ndarray, w: np.ndarray, d: np.ndarray, volume: float, warming: tuple[float, float, float]
 ) -> tuple[int, bool]:
     """Advance y over the strain increment `d` in sub-steps.
 
@@ -251,7 +269,7 @@ def integrate(
             error = 0.0
             for i in range(m):
                 error += w[i] * (work[2, i] - work[1, i]) ** 2
-            error = math.sqrt(error / functions(p, y[2 * m], y[2 * m + 1])[0]) / p[TOLERANCE]
+            error = math.sqrt(error / functions(p, y[2 * m], y[2 * m + 1])[0]) / warming[2]
             factor = 0.9 / math.sqrt(error) if error > 0.0 else 5.0
             h = step * min(max(factor, 0.1), 5.0)
             if error > 1.0:
@@ -269,22 +287,20 @@ def integrate(
 
 
 @njit(**KERNEL)
-def rod_heun(
-    p: np.ndarray, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
-) -> int:
-    """The thesis's integrator for the rod: the same arguments as `rod.return_map`.
+def _rod(p: np.ndarray, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, tolerance: float) -> int:
+    """The thesis's integrator for the rod: arguments as of `increment.advance`.
 
-    The relative error of stress allowed in a sub-step is `heun_tolerance` of the law; if it is infinite, the plastic
+    The relative error of stress allowed in a sub-step is `tolerance`; if it is infinite, the plastic
     part of the increment is one step. C is the tangent of the rate equations at the end (3.2.4).
 
     Returns:
         Number of sub-steps, 0 for an elastic increment, -1 if there were too many, -2 if too hot for the table.
     """
     w = np.array(ROD_METRIC)
-    d = np.array((de11, 0.5 * dg12, 0.5 * dg13))
+    d = np.array((de[0], 0.5 * de[1], 0.5 * de[2]))
     y = np.zeros(9)
     thermal = old.shape[0] > 7
-    warming = (p[HEATING], 0.0) if thermal else (0.0, p[CHANGE])
+    warming = (p[HEATING], 0.0, tolerance) if thermal else (0.0, p[CHANGE], tolerance)
     y[0] = old[0] / 1.5
     y[1:7] = old[1:7]
     y[7] = old[7] if thermal else p[TEMPERATURE] - p[CHANGE]
@@ -299,17 +315,17 @@ def rod_heun(
     for j in range(3):
         d[:] = 0.0
         d[j] = 1.0 if j == 0 else 0.5
-        _rates(p, y, w, d, 0.0, (warming[0], 0.0), PLASTIC if plastic else ELASTIC, rate)
+        _rates(p, y, w, d, 0.0, (warming[0], 0.0, 0.0), PLASTIC if plastic else ELASTIC, rate)
         C[0, j], C[1, j], C[2, j] = 1.5 * rate[0], rate[1], rate[2]
     return steps
 
 
 @njit(**KERNEL)
-def solid_heun(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
-    """The thesis's integrator for the full stress state: arguments of `solid.return_map`, the rest as in `rod_heun`."""
+def _solid(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray, tolerance: float) -> int:
+    """The thesis's integrator for the full stress state: as `_rod`."""
     w = np.array(SOLID_METRIC)
     thermal = old.shape[0] > 13
-    warming = (p[HEATING], 0.0) if thermal else (0.0, p[CHANGE])
+    warming = (p[HEATING], 0.0, tolerance) if thermal else (0.0, p[CHANGE], tolerance)
     y = np.zeros(15)
     mean = (old[0] + old[1] + old[2]) / 3.0
     for i in range(6):
@@ -331,7 +347,7 @@ def solid_heun(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
     for j in range(6):
         unit[:] = 0.0
         unit[j] = 1.0
-        _rates(p, y, w, d, _split(unit, d), (warming[0], 0.0), PLASTIC if plastic else ELASTIC, rate)
+        _rates(p, y, w, d, _split(unit, d), (warming[0], 0.0, 0.0), PLASTIC if plastic else ELASTIC, rate)
         for i in range(6):
             C[i, j] = rate[i] + (rate[14] if i < 3 else 0.0)
     return steps
@@ -345,3 +361,60 @@ def _split(dD: np.ndarray, d: np.ndarray) -> float:
         d[i] = dD[i] - volume / 3.0
         d[3 + i] = 0.5 * dD[3 + i]
     return volume
+
+
+@njit(**KERNEL)
+def _points(
+    p: np.ndarray,
+    state: np.ndarray,
+    increments: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+    count: np.ndarray,
+    tolerance: float,
+) -> None:
+    for i in range(state.shape[0]):
+        if increments.shape[1] == 3:
+            count[i] = _rod(p, state[i], increments[i], new[i], tangent[i], tolerance)
+        else:
+            count[i] = _solid(p, state[i], increments[i], new[i], tangent[i], tolerance)
+
+
+def update(
+    law: Law,
+    state: np.ndarray,
+    increments: np.ndarray,
+    temperature: float | tuple[float, float] | None = None,
+    tolerance: float | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Advance points by strain increments, as `coilset.model.material.points.update`.
+
+    Args:
+        law, state, increments, temperature: as there; k², ζ, κ, heating and spin.
+        tolerance: error of stress, relative to the yield stress, allowed in a sub-step, None: 1e-4; inf: one step.
+
+    Returns:
+        The new state, the tangent of the rate equations, and the number of sub-steps, 0 where a point stayed elastic.
+    """
+    tolerance = 1e-4 if tolerance is None else tolerance
+    start, end = temperature if isinstance(temperature, tuple) else (temperature, temperature)
+    p, (points, components) = law.parameters(end), increments.shape
+    if start is not None and end is not None and start != end:
+        p[CHANGE] = end - start
+        normals = np.arange(components) < (1 if components == 3 else 3)
+        increments = increments - law.thermal_strain(start, end) * normals
+    new, tangent = np.empty_like(state), np.empty((points, components, components))
+    count = np.empty(points, dtype=np.int64)
+    _points(p, np.ascontiguousarray(state), np.ascontiguousarray(increments, float), new, tangent, count, tolerance)
+    refuse(law, count)
+    return new, tangent, count
+
+
+def run(law: Law, program: Program, tolerance: float = 1e-4) -> History:
+    """Drive one point through a program."""
+    return programs.run(law, program, partial(update, tolerance=tolerance), 0.1 * min(tolerance, 1e-2))
+
+
+# Both, by name, for what compares them.
+UPDATES = {"return_mapping": update_points, "heun": update}
+RUNS = {"return_mapping": programs.run, "heun": run}

@@ -1,0 +1,297 @@
+"""Errors of mesh, section rule and contact, estimated by a companion: the same run on half of the elements.
+
+The companion takes the steps that the run has taken, so that both have nearly the same error by their steps, and what
+its forces and heights differ by is the error of the **mesh**: as large as the run's own where an error falls with the
+first power of the elements' length, as that of wire that flows between closed coils does, and three times that where it
+falls with the second. No knowledge of the element enters.
+
+A few of its sections are followed with a **finer rule** along the same strains. The work of the difference of their
+forces, s_finer − s, on the deformation of the step, over its travel, is the error of the force; on the elastic
+deformation of the first step it is what is left at the release, as in `coilset.model.equilibrium.step_error`. Wire with
+a past gets it with the finer rule, too, and the difference of its surface's shear counts as well.
+
+**Contact**: bodies that lie in each other by p under pressures q hold the energy U = ½ Σ q p. Rigid ones hold none, and
+by the principle of minimum potential energy their spring's is greater by U to first order: its force is greater by
+dU/ds at the same travel. The wire is compressed by 2U/F less than the travel says, which bounds the error of the set.
+"""
+
+import logging
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.springs.shapes import Table
+from coilset.meshes.springs.stations import LEAST
+from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
+from coilset.model.base.errors import CoilsetError
+from coilset.model.case import Case
+from coilset.model.manufacture.initial_state import give_sections_past
+from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step
+from coilset.model.results.records.releases import Release, last_release
+from coilset.model.results.records.summary import shear_inside
+from coilset.model.section.kinds import make_sections
+from coilset.model.section.rules import polar
+
+if TYPE_CHECKING:
+    from coilset.model.run.analysis import Analysis
+
+log = logging.getLogger("coilset.steps")
+
+FOLLOWED = 8  # elements whose sections are followed with the finer rule
+RINGS, ANGLES = 12, 48  # of the finer rule at least
+STILL = 1e-9  # of the free length: a step of less travel is one of force or time
+NOT_KNOWN = Errors(None, None, None)
+
+
+def estimated(analysis: "Analysis") -> Result:
+    """The result of a complete run with the errors of its numbers; collective.
+
+    Where the companion finds no equilibrium, only the error by the steps is known, and the log says so.
+    """
+    result, comm = analysis.result, analysis.comm
+    try:
+        companion = type(analysis)(coarse_case(analysis.case, result.steps), comm, False, estimates=False)
+        watch = _Watch(companion)
+        companion.run(watch)
+        surface = watch.surface_error()
+    except CoilsetError as error:
+        log.info("mesh, section and contact: errors not estimated, the companion on half of the elements: %s", error)
+        return replace(result, errors=RunErrors(_of_steps(analysis.setup, result), NOT_KNOWN, NOT_KNOWN, NOT_KNOWN))
+    judged = _judged(analysis, companion, watch.seen, surface) if comm.rank == 0 else None
+    steps, errors = comm.bcast(judged)
+    return replace(result, steps=steps, errors=errors)
+
+
+def _together(comm: MPI.Comm, action: Callable[[], object]) -> None:
+    """Do something on each rank; where it fails on one, all raise its CoilsetError; collective."""
+    problem = None
+    try:
+        action()
+    except CoilsetError as error:
+        problem = str(error)
+    problem = next((one for one in comm.allgather(problem) if one), None)
+    if problem:
+        raise CoilsetError(problem)
+
+
+def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
+    """The case of the companion: half of the elements, the steps of the run, no estimates."""
+    mesh = case.mesh
+    density = mesh.elements_per_turn
+    if isinstance(density, Table):
+        values = tuple(max(LEAST, 0.5 * value) for value in density.values)
+        coarse: Any = density.model_copy(update={"values": values})
+    else:
+        coarse = max(float(LEAST), 0.5 * density)
+    sagitta = None if mesh.sagitta is None else 4.0 * mesh.sagitta
+    loading = []
+    for number, phase in enumerate(case.loading):
+        marks = [step.progress for step in steps if step.phase == number]
+        loading.append(phase.model_copy(update={"steps": [*marks[:-1], 1.0] if marks else 1}))
+    update = {
+        "mesh": mesh.model_copy(update={"elements_per_turn": coarse, "sagitta": sagitta}),
+        "loading": loading,
+        "accuracy": "none",
+    }
+    return case.model_copy(update=update)
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """The companion after one of its steps.
+
+    Attributes:
+        step: Step.
+        section, left: error of the force by the section rule at this height, and at the first step's, N.
+        energy: of the contacts' bedding, N mm.
+    """
+
+    step: Step
+    section: float
+    left: float
+    energy: float
+
+
+class _Watch:
+    """Follows the companion's sections with the finer rule and notes the energy of its contacts; collective."""
+
+    def __init__(self, companion: "Analysis") -> None:
+        self.companion, self.rod, self.comm = companion, companion.rod, companion.comm
+        section, rod, rule = companion.case.mesh.section, companion.rod, companion.rod.rule
+        n = len(rod.radius)
+        self.stride = max(1, math.ceil(rod.mesh.topology.index_map(1).size_global / FOLLOWED))
+        self.cells = np.arange(n)[self.stride // 2 :: self.stride] if n > self.stride // 2 else np.arange(min(n, 1))
+        finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
+        self.sections = make_sections(
+            section.kind,
+            rod.law,
+            rod.parameters,
+            finer,
+            rod.radius[self.cells],
+            rod.placement.part(self.cells),
+            rod.temperature,
+            section.degree,
+        )
+        self.start = self.sections.initial_state()
+        _together(self.comm, lambda: give_sections_past(self.sections, finer, self.start, rod, companion.case.spring))
+        self.start["strain"] = self._strain()
+        self.trial = {name: values.copy() for name, values in self.start.items()}
+        self._clock(self.start)
+        self.length = self.stride * rod.l0[self.cells, None, None] * np.array(rod.element.weights)[:, None]
+        self.first: tuple[np.ndarray, float] | None = None
+        self.travel, self.seen, self.lost = 0.0, list[_Seen](), False
+
+    def _strain(self) -> np.ndarray:
+        return self.rod.state["strain"].equilibrium[self.cells].copy()
+
+    def _clock(self, state: dict[str, np.ndarray]) -> None:
+        if "clock" in self.rod.state:
+            state["clock"] = self.rod.state["clock"].equilibrium.copy()
+
+    def __call__(self, step: Step) -> None:
+        error, change = self._follow()
+        travel, self.travel = step.travel_mm - self.travel, step.travel_mm
+        if self.first is None and abs(travel) > 0.0:
+            self.first = change, travel
+        first, unit = self.first or (change, math.inf)
+        left = self._work(error, first) / unit
+        still = abs(travel) < STILL * self.companion.spring.free_length
+        now = left if still else self._work(error, change) / travel
+        parts = self.companion.system.last.contributions
+        energy = 0.5 * sum(float(part.pressure[part.bears] @ part.penetration[part.bears]) for part in parts)
+        self.seen.append(_Seen(step, now, left, sum_of_ranks(self.comm, energy)))
+
+    def _follow(self) -> tuple[np.ndarray, np.ndarray]:
+        """Error of the section forces after the last step, and its strains, shape (cells, sections, 6)."""
+        strain = self._strain()
+        self._clock(self.trial)
+        change = strain - self.start["strain"]
+        forces, D = np.zeros_like(strain), np.empty((*strain.shape, 6))
+        if len(self.cells):
+            good = self.sections.update(strain, self.start, self.trial, forces, D, False)
+            self.lost = self.lost or not good
+            self.sections.update_surface(strain, self.start, self.trial)
+        self.trial["strain"] = strain
+        self.start, self.trial = self.trial, self.start
+        return forces - self.rod.coefficients.s[self.cells], change
+
+    def _work(self, error: np.ndarray, change: np.ndarray) -> float:
+        """Work of a section-force error on increments of strain, N mm; not a number where the law found no stress."""
+        work = sum_of_ranks(self.comm, float(np.sum(self.length * error * change)))
+        return math.nan if max_of_ranks(self.comm, float(self.lost)) else work
+
+    def surface_error(self) -> float:
+        """Largest difference of shear stress at the inside by the finer rule, MPa; collective."""
+        components, inside = self.sections.components, self.companion.setup.inside
+        own, finer = (
+            inside.shear(state, components)
+            for state in (self.rod.surface_state[self.cells], self.start["surface_state"])
+        )
+        return max_of_ranks(self.comm, float(np.abs(finer - own).max(initial=0.0)))
+
+
+@dataclass(frozen=True)
+class _StepErrors:
+    """Errors of one step by mesh, section rule and contact: of the force, N, and of the height, mm."""
+
+    forces: tuple[float, float, float]
+    heights: tuple[float, float, float]
+
+
+def _judged(
+    analysis: "Analysis", companion: "Analysis", seen: Sequence[_Seen], surface: float
+) -> tuple[tuple[Step, ...], RunErrors]:
+    """The steps with their total errors, and the errors of the run's numbers; on rank 0."""
+    setup, result = analysis.setup, analysis.result
+    at = {_place(one.step): k for k, one in enumerate(seen)}
+    steps, found = [], []
+    force = travel = 0.0
+    stiffness = result.rate
+    for step in result.steps:
+        way = step.travel_mm - travel
+        if abs(way) > STILL * analysis.spring.free_length and step.force_N != force:
+            stiffness = abs((step.force_N - force) / way)
+        force, travel = step.force_N, step.travel_mm
+        one = _step_errors(step, seen, at.get(_place(step)), stiffness)
+        found.append(one)
+        own = step.steps_force_error_N, step.steps_height_error_mm
+        totals = [_total(mine, others) for mine, others in zip(own, (one.forces, one.heights), strict=True)]
+        steps.append(replace(step, estimated_force_error_N=totals[0], estimated_height_error_mm=totals[1]))
+    top = max(range(len(steps)), key=lambda k: abs(steps[k].force_N))
+    forces, release = [_known(value) for value in found[top].forces], last_release(setup, result)
+    sets: list[float | None] = [None] * 3
+    shears: list[float | None] = [None] * 3
+    mine = _of_steps(setup, result)
+    theirs = last_release(companion.setup, companion.result)
+    if release is not None and theirs is not None:
+        number = result.steps.index(release.step)
+        sets = [abs(theirs.set - release.set), *map(_known, found[number].heights[1:])]
+        sets[2] = _by_contact(seen, release)
+        slope, other = _shear_slope(setup, result, release), shear_inside(companion.setup, theirs.snapshot)[0]
+        shears = [None if one is None else slope * one for one in sets]
+        shears[0] = abs(other - shear_inside(setup, release.snapshot)[0])
+        shears[1] = None if shears[1] is None else shears[1] + surface
+    return tuple(steps), RunErrors(mine, *(Errors(*values) for values in zip(forces, sets, shears, strict=True)))
+
+
+def _place(step: Step) -> tuple[int, float]:
+    return step.phase, round(step.progress, 9)
+
+
+def _known(value: float) -> float | None:
+    return abs(value) if math.isfinite(value) else None
+
+
+def _total(steps: float | None, others: Sequence[float]) -> float | None:
+    return None if steps is None else _known(abs(steps) + sum(map(abs, others)))
+
+
+def _step_errors(step: Step, seen: Sequence[_Seen], number: int | None, stiffness: float) -> _StepErrors:
+    """The errors of a step, which the companion has taken as its step `number`; not numbers where it has not."""
+    if number is None:
+        return _StepErrors((math.nan,) * 3, (math.nan,) * 3)
+    one = seen[number]
+    force = abs(one.step.force_N - step.force_N) + abs(one.step.seat_height_mm - step.seat_height_mm) * stiffness
+    forces = force, one.section, _contact_force(seen, number)
+    mesh, section, contact = (value / stiffness if stiffness else math.nan for value in forces)
+    return _StepErrors(forces, (mesh, section, contact))
+
+
+def _contact_force(seen: Sequence[_Seen], number: int) -> float:
+    """dU/ds over the last step with a travel, N; 0 before there is one."""
+    for k in range(number, -1, -1):
+        before = seen[k - 1] if k else None
+        way = seen[k].step.travel_mm - (before.step.travel_mm if before else 0.0)
+        if abs(way) > 0.0:
+            return abs((seen[k].energy - (before.energy if before else 0.0)) / way)
+    return 0.0
+
+
+def _by_contact(seen: Sequence[_Seen], release: Release) -> float | None:
+    """Bound of the error of the set by the penetration 2U/F at the maximum force, mm; none of a spring that sets by
+    none."""
+    top = max(seen, key=lambda one: abs(one.step.force_N))
+    if not top.step.force_N or not top.step.travel_mm:
+        return None
+    return abs(2.0 * top.energy / top.step.force_N) * min(abs(release.set / top.step.travel_mm), 1.0)
+
+
+def _shear_slope(setup: Setup, result: Result, release: Release) -> float:
+    """Change of the shear stress at the inside over the height of the release, MPa/mm."""
+    number = next(k for k, shot in enumerate(result.snapshots) if shot is release.snapshot)
+    loaded = result.snapshots[number - 1]
+    way = release.step.seat_height_mm - loaded.height
+    return abs((shear_inside(setup, release.snapshot)[0] - shear_inside(setup, loaded)[0]) / way) if way else 0.0
+
+
+def _of_steps(setup: Setup, result: Result) -> Errors:
+    """Errors by the length of the steps."""
+    top, release = max(result.steps, key=lambda step: abs(step.force_N)), last_release(setup, result)
+    force, error = top.steps_force_error_N, None if release is None else release.set_error
+    if release is None or error is None:
+        return Errors(None if force is None else abs(force), None, None)
+    return Errors(None if force is None else abs(force), abs(error), _shear_slope(setup, result, release) * abs(error))

@@ -1,0 +1,58 @@
+"""Cases on a Dask cluster: one that is running, named by its scheduler, or processes of this machine."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from coilset.model.base.errors import InputError
+from coilset.model.sweep.engines.pool import Pool, Record, Task
+
+CONNECT_SECONDS = 30
+
+
+@contextmanager
+def dask_pool(scheduler: str | None, jobs: int) -> Iterator[Pool]:
+    """A pool over the workers of a Dask cluster. Each must have coilset and see the files that the sweep names.
+
+    Args:
+        scheduler: address such as `tcp://host:8786`; None starts a cluster on this machine.
+        jobs: number of its processes, if one is started.
+
+    Raises:
+        InputError: Dask is not installed, or the scheduler does not answer or has no workers.
+    """
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError:
+        raise InputError("needs the package distributed (Dask)", "--engine") from None
+    if scheduler is None:
+        # nothing of a case can be shared by threads: PETSc and the compiled kernels use one per process
+        cluster = LocalCluster(n_workers=jobs, threads_per_worker=1, dashboard_address=None, silence_logs=logging.ERROR)
+        with cluster, Client(cluster) as client:
+            client.wait_for_workers(jobs)
+            yield _pool(client)
+        return
+    try:
+        client = Client(scheduler, timeout=CONNECT_SECONDS)
+    except (OSError, ValueError) as error:
+        raise InputError(f"no scheduler answers: {error}", "--scheduler", scheduler) from None
+    with client:
+        yield _pool(client)
+
+
+def _pool(client: Any) -> Pool:
+    workers = sum(client.nthreads().values())
+    if not workers:
+        raise InputError("this cluster has no workers yet; start some, then run the sweep again", "--scheduler")
+    executor = client.get_executor(pure=False)
+    return Pool(lambda tasks: executor.submit(evaluate_tasks, tasks), workers)
+
+
+def evaluate_tasks(tasks: list[Task]) -> list[Record]:
+    """In a Dask worker: the records of tasks, each solved on one rank."""
+    from mpi4py import MPI
+
+    from coilset.model.sweep.evaluate import evaluate_in_worker
+
+    return evaluate_in_worker(tasks, MPI.COMM_SELF)

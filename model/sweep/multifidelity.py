@@ -1,0 +1,132 @@
+"""Statistics of rods from few of them and many uniform rods: control variates.
+
+With r the response of the rod, known in n of N cases, and u that of the uniform rod, known in all, the estimator of a
+mean
+
+    θ = r̄ₙ − β (ūₙ − ū_N),   β = cov(r, u)/var(u),   var θ = s²/n + β² var(u)/N,   s² the variance of r − β u
+
+is unbiased but for the estimate of β, of order 1/n; plain sampling has var(r)/n (Peherstorfer, Willcox and Gunzburger,
+SIAM Rev. 60 (2018) 550). A probability is the mean of an indicator; its control is the indicator of a + b u, the
+regression of r on u. A quantile is where the probability so estimated has its level.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+from scipy.optimize import isotonic_regression
+
+from coilset.model.results.records.units import quantity
+from coilset.model.sweep.plan import Plan
+
+LEVEL = 0.95
+FEWEST = 8  # rods, below which no interval is given
+QUANTILES = (0.05, 0.5, 0.95)
+CANDIDATES = 401  # values at which the distribution is evaluated
+
+
+@dataclass(frozen=True)
+class Statistic:
+    """An estimate with the bounds of its 95 % interval, and the cases of plain sampling that this is worth."""
+
+    value: float
+    low: float
+    high: float
+    worth: float
+
+
+class ControlVariate:
+    """Estimates for one response.
+
+    Args:
+        rod: of the cases that rods computed, shape (n,).
+        uniform: of the same cases by the uniform rod, shape (n,).
+        all_uniform: of all cases by the uniform rod, those among them, shape (N,).
+
+    Raises:
+        ValueError: fewer than FEWEST rods.
+    """
+
+    def __init__(self, rod: np.ndarray, uniform: np.ndarray, all_uniform: np.ndarray) -> None:
+        if len(rod) < FEWEST:
+            raise ValueError(f"{len(rod)} rods are too few for an interval; {FEWEST} are needed")
+        self.rod = rod
+        slope = _slope(rod, uniform)
+        self._predicted = rod.mean() + slope * (uniform - uniform.mean())
+        self._all_predicted = rod.mean() + slope * (all_uniform - uniform.mean())
+
+    def mean(self) -> Statistic:
+        """Of the response."""
+        return self._controlled(self.rod, self._predicted, self._all_predicted)
+
+    def probability(self, limit: float) -> Statistic:
+        """That the response is at most `limit`."""
+        indicators = (values <= limit for values in (self.rod, self._predicted, self._all_predicted))
+        found = self._controlled(*(values.astype(float) for values in indicators))
+        value, low, high = np.clip([found.value, found.low, found.high], 0.0, 1.0).tolist()
+        return Statistic(value, low, high, found.worth)
+
+    def quantile(self, level: float) -> Statistic:
+        """The value that a share `level` of the cases does not exceed."""
+        everything = np.concatenate([self.rod, self._all_predicted])
+        candidates = np.quantile(everything, np.linspace(0.0, 1.0, CANDIDATES))
+        found = [self.probability(value) for value in candidates]
+        bounds = ([getattr(one, name) for one in found] for name in ("value", "low", "high"))
+        value, high, low = (float(np.interp(level, isotonic_regression(one).x, candidates)) for one in bounds)
+        at = int(np.argmin(np.abs(candidates - value)))
+        return Statistic(value, low, high, found[at].worth)
+
+    def _controlled(self, rod: np.ndarray, control: np.ndarray, all_controls: np.ndarray) -> Statistic:
+        n, beta = len(rod), _slope(rod, control)
+        value = float(rod.mean() - beta * (control.mean() - all_controls.mean()))
+        # two degrees of freedom are used up; an indicator that never changes still may by about one case in n
+        residual = max(float(np.var(rod - beta * control, ddof=2)), 1.0 / (n + 1.0) ** 2 if _is_indicator(rod) else 0.0)
+        variance = residual / n + beta**2 * float(np.var(all_controls)) / len(all_controls)
+        half = float(stats.t.ppf(0.5 + 0.5 * LEVEL, n - 2)) * variance**0.5
+        return Statistic(
+            value, value - half, value + half, float(np.var(rod, ddof=1)) / variance if variance else np.inf
+        )
+
+
+def _slope(values: np.ndarray, control: np.ndarray) -> float:
+    """Of the regression of values on their control; 0 if that is constant."""
+    spread = float(np.var(control))
+    return float(np.mean((values - values.mean()) * (control - control.mean()))) / spread if spread else 0.0
+
+
+def _is_indicator(values: np.ndarray) -> bool:
+    return bool(np.isin(values, (0.0, 1.0)).all())
+
+
+def of_response(data: xr.Dataset, name: str) -> ControlVariate:
+    """Estimates for a response of a sweep of uniform rods, some of which rods computed, too.
+
+    Raises:
+        ValueError: no or too few rods have it.
+    """
+    if f"rod_{name}" not in data or name not in data:
+        raise ValueError(f"no rod of this sweep has the response {name}")
+    uniform = data[name].values
+    known = np.isfinite(uniform)
+    rod = data[f"rod_{name}"].values
+    both = known & np.isfinite(rod)
+    return ControlVariate(rod[both], uniform[both], uniform[known])
+
+
+def lines(plan: Plan, data: xr.Dataset) -> Iterator[str]:
+    """For people: mean and quantiles of the responses of rods, with their intervals."""
+    if not plan.spec.rods:
+        return
+    yield f"rods, from {plan.spec.rods} of them and {data.sizes['case']} uniform rods (95 % intervals):"
+    for name in ("set_mm", "force_max_N"):
+        try:
+            estimates = of_response(data, name)
+        except ValueError as error:
+            yield f"  {error}"
+            continue
+        words, unit = quantity(name)
+        found = {"mean": estimates.mean()} | {f"{level:.0%}": estimates.quantile(level) for level in QUANTILES}
+        parts = (f"{word} {one.value:.5g} ({one.low:.5g} to {one.high:.5g})" for word, one in found.items())
+        yield f"  {words}, {unit}: {', '.join(parts)}"

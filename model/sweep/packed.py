@@ -1,0 +1,91 @@
+"""Inputs and keys of very many cases in little memory: a number takes 8 bytes, a key 25, no Python object."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, overload
+
+import numpy as np
+
+from coilset.model.sweep.keys import KEY_LENGTH
+from coilset.model.sweep.spec import are_numbers
+
+Row = tuple[Any, ...]  # the inputs of a case
+
+
+class Rows(Sequence[Row]):
+    """Rows of a table, kept by columns.
+
+    Args:
+        columns: each a float array, or a list of any values; of equal length.
+    """
+
+    def __init__(self, columns: Sequence[np.ndarray | list[Any]]) -> None:
+        self.columns = columns
+        self.added: list[Row] = []
+        self._length = len(self.columns[0]) if self.columns else 0
+
+    @classmethod
+    def of(cls, rows: Iterable[Row]) -> "Rows":
+        """From rows."""
+        return cls([list(column) for column in zip(*rows, strict=True)])
+
+    def is_numeric(self, k: int) -> bool:
+        """Whether column k has only numbers."""
+        column = self.columns[k]
+        return isinstance(column, np.ndarray) or are_numbers(column)
+
+    def __len__(self) -> int:
+        return self._length + len(self.added)
+
+    @overload
+    def __getitem__(self, at: int) -> Row: ...
+
+    @overload
+    def __getitem__(self, at: slice) -> list[Row]: ...
+
+    def __getitem__(self, at: int | slice) -> Row | list[Row]:
+        if isinstance(at, slice):
+            return [self[k] for k in range(*at.indices(len(self)))]
+        if not -len(self) <= at < len(self):
+            raise IndexError(at)
+        at = int(at) % len(self)
+        if at >= self._length:
+            return self.added[at - self._length]
+        return tuple(column[at].item() if isinstance(column, np.ndarray) else column[at] for column in self.columns)
+
+
+class Strings(Sequence[str]):
+    """Keys of cases.
+
+    Args:
+        keys: in order, ASCII.
+    """
+
+    def __init__(self, keys: Iterable[str]) -> None:
+        self.array = np.fromiter((key.encode() for key in keys), dtype=f"S{KEY_LENGTH}")
+
+    def add(self, key: str) -> None:
+        """Append one."""
+        self.array = np.append(self.array, np.array([key.encode()], dtype=self.array.dtype))
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+    @overload
+    def __getitem__(self, at: int) -> str: ...
+
+    @overload
+    def __getitem__(self, at: slice) -> list[str]: ...
+
+    def __getitem__(self, at: int | slice) -> str | list[str]:
+        if isinstance(at, slice):
+            return [self[k] for k in range(*at.indices(len(self)))]
+        key: bytes = self.array[at]
+        return key.decode()
+
+    def __contains__(self, key: object) -> bool:
+        return isinstance(key, str) and bool((self.array == key.encode()).any())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Strings) and np.array_equal(self.array, other.array)
+
+    __hash__ = None  # type: ignore[assignment]  # it may grow

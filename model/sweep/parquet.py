@@ -1,0 +1,96 @@
+"""All cases of a sweep as one Parquet file, for pandas, polars and DuckDB, written as a stream."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coilset.model.base.version import versions
+from coilset.model.results.files.folder import whole
+from coilset.model.results.records.summary_entries import NUMBERS
+from coilset.model.results.records.units import quantity
+from coilset.model.sweep.dataset import corrects, responses_of, words_of_warnings
+from coilset.model.sweep.journal import Records
+from coilset.model.sweep.plan import Plan
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+ROWS = 20_000  # of a row group, which is what memory holds at a time
+
+
+def write(path: str | Path, plan: Plan, folder: str | Path) -> int | None:
+    """Write one row for each record: case, model, inputs, key, status, reason, warnings, seconds, responses.
+
+    Args:
+        path: the file.
+        plan, folder: the sweep; its journals are read one record after the other. Rows are in their order, not in that
+            of the plan: `case` is the number of the case there, from 0.
+
+    Returns:
+        The number of rows; None if pyarrow is not installed, and nothing is written.
+    """
+    try:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    except ImportError:
+        return None
+    schema, count = _schema(pa, plan), 0
+    with whole(path) as partial, pq.ParquetWriter(partial, schema, compression="zstd") as writer:
+        for rows in _batches(plan, folder):
+            count += len(rows)
+            writer.write_table(pa.Table.from_pylist(rows, schema=schema))
+    return count
+
+
+def _batches(plan: Plan, folder: str | Path) -> Iterator[list[dict[str, Any]]]:
+    keys = plan.keys.array
+    order = np.argsort(keys)
+    rows: list[dict[str, Any]] = []
+    numeric = _numeric(plan)
+    for record in Records(folder, (key for _row, key, _model in plan.tasks())):
+        rod = corrects(plan, record)
+        key = (record["key"] + "u" if rod else record["key"]).encode()
+        first, last = (np.searchsorted(keys, key, side, sorter=order) for side in ("left", "right"))
+        common = {
+            "model": "rod" if rod else plan.spec.model,
+            "key": record["key"],
+            "status": record["status"],
+            "reason": record["reason"],
+            "warnings": words_of_warnings(record),
+            "seconds": record["seconds"],
+        }
+        common |= {name.removeprefix("rod_"): value for name, value in responses_of(plan, record).items()}
+        for case in order[first:last]:
+            inputs = {
+                name: value if number else str(value)
+                for name, value, number in zip(plan.names, plan.rows[case], numeric, strict=True)
+            }
+            rows.append({"case": int(case)} | inputs | common)
+        if len(rows) >= ROWS:
+            yield rows
+            rows = []
+    yield rows
+
+
+def _numeric(plan: Plan) -> list[bool]:
+    """Which inputs are numbers in all cases."""
+    return [plan.rows.is_numeric(k) for k in range(len(plan.names))]
+
+
+def _schema(pa: Any, plan: Plan) -> "pa.Schema":
+    """Columns with their units, and what the sweep was."""
+    fields = [pa.field("case", pa.int64()), pa.field("model", pa.string())]
+    for name, number in zip(plan.names, _numeric(plan), strict=True):
+        fields.append(pa.field(name, pa.float64() if number else pa.string()))
+    fields += [pa.field(name, pa.string()) for name in ("key", "status", "reason", "warnings")]
+    fields.append(pa.field("seconds", pa.float64(), metadata={"units": "s"}))
+    for name in NUMBERS:
+        column = f"{name}_found" if name in plan.names else name
+        words, unit = quantity(name)
+        fields.append(pa.field(column, pa.float64(), metadata={"units": unit, "long_name": words}))
+    attributes = {"title": f"sweep {plan.path.stem}", "versions": versions(), "design": plan.spec.design}
+    attributes |= {"inputs": json.dumps(plan.names), "cases": str(len(plan))}
+    return pa.schema(fields, metadata=attributes)

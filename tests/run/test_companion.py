@@ -1,0 +1,115 @@
+"""Errors by mesh, section rule and contact against the differences to finer runs."""
+
+import json
+
+import pytest
+from mpi4py import MPI
+
+from coilset.model.base.errors import SolveError
+from coilset.model.case import read_case
+from coilset.model.results.records.labels import largest_errors, within
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
+from coilset.model.run.companion import coarse_case
+
+MADE = ["mesh.elements_per_turn=8", "mesh.section.radial=3", "mesh.section.angular=8"]
+PRESSED = "loading=[{to: {travel: 12}, steps: 4}, {to: {force: 0}, steps: 1}]"
+
+
+def analysed(example, *settings, estimates=True):
+    analysis = Analysis(read_case(example, [*MADE, PRESSED, *settings]), MPI.COMM_SELF, False, estimates=estimates)
+    analysis.run()
+    return analysis, summarise(analysis.setup, analysis.result)
+
+
+@pytest.fixture(scope="module")
+def clamped(example):
+    return analysed(example, "ends=clamped", "accuracy=50 %")
+
+
+def test_the_total_is_the_sum_of_four_causes_and_is_in_the_history(clamped):
+    analysis, summary = clamped
+    parts = summary["estimated_errors"]
+    assert list(parts) == ["steps", "mesh", "section", "contact"]
+    for total, name in (
+        ("estimated_force_error_N", "force_N"),
+        ("estimated_set_error_mm", "set_mm"),
+        ("estimated_residual_shear_inside_error_MPa", "residual_shear_inside_MPa"),
+    ):
+        assert summary[total] == pytest.approx(sum(part[name] for part in parts.values()))
+        assert summary[total] > 0.0
+    top = max(analysis.result.steps, key=lambda step: step.force_N)
+    assert top.estimated_force_error_N == pytest.approx(summary["estimated_force_error_N"])
+    assert json.loads(json.dumps(summary["estimated_errors"])) == parts
+    assert parts["contact"]["force_N"] == 0.0  # nothing touches
+    assert not [one for one in summary["warnings"] if one["name"] == "error"]
+
+
+def test_the_meshs_error_covers_the_difference_to_a_fine_one(clamped, example):
+    """The force falls with the second power of the length here, so that the estimate is three times as large."""
+    _, summary = clamped
+    _, fine = analysed(example, "ends=clamped", "mesh.elements_per_turn=32", estimates=False)
+    mesh = summary["estimated_errors"]["mesh"]
+    for name, value in (("force_N", "force_max_N"), ("set_mm", "set_mm")):
+        assert abs(fine[value] - summary[value]) < mesh[name] < 8.0 * abs(fine[value] - summary[value])
+
+
+def test_the_sections_error_is_that_of_a_finer_rule(clamped, example):
+    _, summary = clamped
+    finer = ("mesh.section.radial=12", "mesh.section.angular=48")
+    _, fine = analysed(example, "ends=clamped", *finer, estimates=False)
+    true = abs(fine["force_max_N"] - summary["force_max_N"])
+    assert 0.5 < summary["estimated_errors"]["section"]["force_N"] / true < 2.0
+
+
+def test_contact_is_off_by_what_a_stiffer_bedding_changes(example):
+    _, summary = analysed(example)
+    _, stiff = analysed(example, "contact.bedding=105000", estimates=False)  # twenty times the default
+    true = stiff["force_max_N"] - summary["force_max_N"]
+    assert 0.5 < summary["estimated_errors"]["contact"]["force_N"] / true < 2.0
+
+
+def test_a_companion_that_finds_no_equilibrium_leaves_the_errors_unknown(example, monkeypatch):
+    def fails(*_):
+        raise SolveError("no equilibrium")
+
+    monkeypatch.setattr("coilset.model.run.companion._Watch", fails)
+    _, summary = analysed(example, "ends=clamped")
+    assert summary["estimated_force_error_N"] is None
+    assert summary["estimated_errors"]["steps"]["force_N"] > 0.0
+    assert [one["place"] for one in summary["warnings"] if one["name"] == "unknown error"] == ["mesh"]
+
+
+def test_the_companion_has_half_of_the_elements_and_the_same_steps(clamped):
+    analysis, _ = clamped
+    case = coarse_case(analysis.case, analysis.result.steps)
+    assert case.mesh.elements_per_turn == 4.0
+    assert [phase.steps for phase in case.loading] == [[0.25, 0.5, 0.75, 1.0], [1.0]]
+    assert case.steps_error is None
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (13.2808, 0.0174, "13.281 ± 0.018 mm"),
+        (13.2808, 0.0234, "13.28 ± 0.03 mm"),
+        (4518.7, 962.0, "4500 ± 1000 mm"),
+        (0.5, 1e-9, "0.5000 ± 0.0001 mm"),
+        (-58.857, 0.98, "-58.9 ± 1.0 mm"),
+        (1.5, None, "1.5000 mm"),
+        (None, 0.1, "none"),
+    ],
+)
+def test_a_value_has_the_digits_that_its_error_allows(value, error, text):
+    assert within(value, error, "mm", 4) == text
+
+
+def test_the_largest_cause_is_named():
+    parts = {"steps": 1.0, "mesh": 2.0, "section": 0.0, "contact": None}
+    errors = {
+        cause: {"force_N": part, "set_mm": part, "residual_shear_inside_MPa": 0.0} for cause, part in parts.items()
+    }
+    assert largest_errors(errors) == "mesh"
+    errors["steps"]["set_mm"] = 3.0
+    assert largest_errors(errors) == "mesh (force), steps (set)"
+    assert largest_errors(None) == ""

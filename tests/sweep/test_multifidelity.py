@@ -1,0 +1,61 @@
+"""Few rods and many uniform rods: statistics against plain sampling of the same cases."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from coilset.model.sweep.multifidelity import ControlVariate
+
+N, FEW = 4000, 60
+LIMIT = 11.5
+
+
+def responses(rng):
+    """Correlated responses, ρ² = 1/1.01, as the sets of rods and uniform rods are."""
+    u = 10.0 + rng.normal(size=N)
+    return u + 0.3 + 0.1 * rng.normal(size=N), u
+
+
+def estimates(seed):
+    rod, uniform = responses(np.random.default_rng(seed))
+    return ControlVariate(rod[:FEW], uniform[:FEW], uniform)
+
+
+EXACT = stats.norm(10.3, np.hypot(1.0, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("statistic", "exact"),
+    [
+        (lambda one: one.mean(), EXACT.mean()),
+        (lambda one: one.probability(LIMIT), EXACT.cdf(LIMIT)),
+        (lambda one: one.quantile(0.9), EXACT.ppf(0.9)),
+    ],
+)
+def test_intervals_hold_the_exact_value_as_often_as_they_promise(statistic, exact):
+    """19 of 20 in the mean; of 40, fewer than 34 would happen once in 1,000 times."""
+    found = [statistic(estimates(seed)) for seed in range(40)]
+    assert sum(one.low <= exact <= one.high for one in found) >= 34
+    assert np.mean([one.value for one in found]) == pytest.approx(exact, abs=0.02 * EXACT.std())
+
+
+def test_it_is_worth_many_rods():
+    """1/((1 − ρ²)/n + ρ²/N) plain samples: with ρ² = 1/1.01, n = 60 and N = 4,000, some 2,400."""
+    assert 20 * FEW < estimates(0).mean().worth < N
+    rod, _ = responses(np.random.default_rng(0))
+    plain = 1.96 * rod[:FEW].std() / np.sqrt(FEW)
+    found = estimates(0).mean()
+    assert found.high - found.low < 2.0 * plain / 4.0
+
+
+def test_without_correlation_it_is_plain_sampling():
+    rng = np.random.default_rng(3)
+    rod, uniform = rng.normal(size=N), rng.normal(size=N)
+    found = ControlVariate(rod[:FEW], uniform[:FEW], uniform).mean()
+    half = stats.t.ppf(0.975, FEW - 2) * rod[:FEW].std(ddof=1) / np.sqrt(FEW)
+    assert 0.5 * (found.high - found.low) == pytest.approx(half, rel=0.05)
+
+
+def test_too_few_rods_give_no_interval():
+    with pytest.raises(ValueError, match="3 rods are too few"):
+        ControlVariate(np.ones(3), np.ones(3), np.ones(9))

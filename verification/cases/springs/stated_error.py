@@ -1,0 +1,67 @@
+"""Errors that runs state against their true ones: random springs, default settings, against fine references
+
+Force at 50, 90 and 100 % of the travel, set and residual shear stress inside, each with the error that the run states,
+against references with 64 elements a turn, 16 × 64 section points and an accuracy of 0.02 %
+(`verification/springs/stated_error.py` makes them, `stated_error.yaml` holds them). All take the default bedding: the
+error by contact is not in them.
+
+Tolerances: at most 5 % of the true errors are above the stated ones, and the median of stated over true is at most 5.
+"""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from coilset.model.base.errors import CoilsetError
+from coilset.model.base.style import STYLE
+from coilset.verification.springs import stated_error
+from coilset.verification.study import Study
+
+FAST = False
+ROUNDING = 1e-6  # of a number: smaller true errors are none
+BEYOND, MEDIAN = 0.05, 5.0  # part of the true errors above the stated ones; stated over true
+
+
+def run(study: Study) -> None:
+    """All springs that have references."""
+    ratios: dict[str, list[float]] = {}
+    rows: list[list[object]] = []
+    for number, true in stated_error.references().items():
+        try:
+            found = stated_error.run(number)
+        except CoilsetError as problem:
+            study.note(f"Spring {number} found no equilibrium: {problem}")
+            continue
+        for name, one in found.items():
+            if name not in true:
+                continue
+            error, stated = abs(true[name] - one.value), one.error
+            ratio = None if stated is None else stated / max(error, ROUNDING * abs(true[name]), 1e-12)
+            rows.append([number, name, true[name], one.value, error, stated, ratio])
+            if ratio is not None:
+                ratios.setdefault(name, []).append(ratio)
+    study.table("all numbers", ["spring", "number", "reference", "run", "true error", "stated", "stated/true"], rows)
+    everything = np.concatenate([np.array(values) for values in ratios.values()])
+    unknown = sum(row[5] is None for row in rows)
+    study.note(f"{len(stated_error.references())} springs, {len(rows)} numbers, {unknown} without a stated error.")
+    beyond = float(np.mean(everything < 1.0))
+    study.check("part of the true errors above the stated ones", beyond, BEYOND, "bound", 0.0, "at_most")
+    study.check("median of stated over true error", np.median(everything), MEDIAN, "bound", 0.0, "at_most")
+    draw(study, ratios)
+
+
+def draw(study: Study, ratios: dict[str, list[float]]) -> None:
+    """Stated over true error of each number."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(7.5, 4.0), layout="constrained")
+        axes = figure.subplots()
+        for k, (_name, values) in enumerate(ratios.items()):
+            spread = 0.25 * np.linspace(-1.0, 1.0, len(values)) if len(values) > 1 else np.zeros(1)
+            axes.plot(k + spread, np.sort(values), "o", ms=4, mfc="none")
+            axes.plot([k - 0.3, k + 0.3], 2 * [np.median(values)], "-", color="k", lw=1.5)
+        axes.axhline(1.0, color="C3", lw=1, label="true error = stated error")
+        axes.set(yscale="log", ylabel="stated error over true error", title="Random springs, default settings")
+        axes.set_xticks(range(len(ratios)), [name.replace(", ", "\nin ") for name in ratios])
+        axes.legend(title="bars: medians")
+        axes.grid(lw=0.3)
+    study.figure("stated_error", figure)
