@@ -240,7 +240,7 @@ class Result:
 
         >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
         >>> print(f"{result.force_at(10):.0f} N when pressed, {result.force_at(15, phase=1):.0f} N on release")
-        178 N when pressed, 71 N on release
+        178 N when pressed, 72 N on release
         """
         return place_at(self.data, travel, phase).force
 
@@ -287,7 +287,7 @@ def solve(
     >>> case = Case.read("examples/ck15_presetting.yaml")
     >>> result = solve(case)
     >>> print(f"set {result.set:.2f} mm of {result.summary['free_length_before_mm']:.0f} mm")
-    set 13.28 mm of 35 mm
+    set 13.26 mm of 35 mm
     """
     comm = MPI.COMM_WORLD if comm is None else comm
     analysis = Analysis(case._case, comm, threads=threads or usual(comm.size))

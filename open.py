@@ -6,6 +6,7 @@ run = coilset.open("results/ck15_presetting")
 run["force_N"]                                        # a column of history.csv, over the steps
 run["surface"].sel(component="t13", snapshot="block")
 run.force_at(5.0), run.rate_at(5.0), run.force_error_at(5.0)
+run.xray(turn=3.5, angle=0, spot=1.0, depth=0)        # residual stress as a diffractometer sees it
 """
 
 import sys
@@ -16,7 +17,10 @@ import xarray as xr
 
 from coilset.model.design.opened import FILE, open_design
 from coilset.model.results.characteristic import Run
+from coilset.model.results.diffraction import register
 from coilset.model.results.files.labelled import labelled
+
+register()
 
 
 class _Open(ModuleType):

@@ -310,6 +310,19 @@ def design(
 
 
 @app.command()
+def compare(
+    folder: str = typer.Argument(help="folder of a measured spring: case.yaml, measured.csv"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/compare/NAME]"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
+) -> None:
+    """Compare measured numbers of a spring with the run of its case."""
+    announce_compiling()
+    from coilset.scripts.commands.learning.compare import compare as beside
+
+    beside(folder, out, force)
+
+
+@app.command()
 def verify(
     names: list[str] = typer.Argument(None, metavar="[NAME]...", help="cases to run; all by default"),
     out: str = typer.Option(

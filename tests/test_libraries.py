@@ -55,6 +55,12 @@ def said(script):
     return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout.split()
 
 
+def test_the_commands_are_listed_without_rich():
+    """It takes longer to load than everything else for `--help`; a command that imports typer itself loads it."""
+    script = "import sys, coilset.scripts.main; print('rich' in sys.modules, 'numba' in sys.modules)"
+    assert said(script) == ["False", "False"]
+
+
 def test_modules_without_use_wait():
     assert said(WAIT) == ["True"]
 

@@ -101,7 +101,7 @@ class MeshSpec(Strict):
     element: Annotated[
         Literal["mixed", "thesis"],
         Field(description="mixed: section forces in equilibrium within the element, 3 sections; thesis: its own, 2"),
-    ] = "thesis"
+    ] = "mixed"
     section: SectionSpec = SectionSpec()
 
     @model_validator(mode="after")

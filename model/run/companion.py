@@ -44,6 +44,7 @@ log = logging.getLogger("coilset.steps")
 FOLLOWED = 8  # elements whose sections are followed with the finer rule
 RINGS, ANGLES = 12, 48  # of the finer rule at least
 STILL = 1e-9  # of the free length: a step of less travel is one of force or time
+PEAK = 1.5  # of the difference of a stress that is greatest at one of the sections, whose places the mesh changes
 NOT_KNOWN = Errors(None, None, None)
 
 
@@ -233,7 +234,7 @@ def _judged(
         sets[2] = _by_contact(seen, release)
         slope, other = _shear_slope(setup, result, release), shear_inside(companion.setup, theirs.snapshot)[0]
         shears = [None if one is None else slope * one for one in sets]
-        shears[0] = abs(other - shear_inside(setup, release.snapshot)[0])
+        shears[0] = PEAK * abs(other - shear_inside(setup, release.snapshot)[0])
         shears[1] = None if shears[1] is None else shears[1] + surface
     return tuple(steps), RunErrors(mine, *(Errors(*values) for values in zip(forces, sets, shears, strict=True)))
 

@@ -147,7 +147,7 @@ class Recorder:
     def _frame(self, x: np.ndarray) -> Frame:
         """The wire at the last equilibrium, stations at `x`; collective."""
         around = self.setup.inside.shear_around(self.rod.surface_state, self.rod.sections.components)
-        mean = np.einsum("cga,g->ca", around, self.rod.element.weights)
+        mean = around.mean(axis=1)
         return Frame(x, self.rod.line.in_order(mean.astype(np.float32)))
 
     def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:

@@ -20,8 +20,9 @@ from coilset.model.slice.watch import equivalent, shear
 def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
     """One .vtu file per snapshot: the section in its current position, with its fields.
 
-    Fields: `displacement` (mm), `stress` (11, 22, 33, 12, 13, 23 with 1 along the wire, 2 outward, 3
-    upward, MPa), `shear stress` in the section and `von Mises stress` (MPa), `plastic work` (N/mm²).
+    Fields: `displacement` (mm), `place` (ξ outward, η upward from the wire's centre, mm), `stress` (11, 22, 33, 12, 13,
+    23 with 1 along the wire, 2 outward, 3 upward, MPa), `shear stress` in the section and `von Mises stress` (MPa),
+    `plastic work` (N/mm²).
     """
     folder = Path(folder) / "fields"
     make(folder)
@@ -30,6 +31,7 @@ def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
     for number, shot in enumerate(analysis.result.snapshots):
         grid = pyvista.UnstructuredGrid({pyvista.CellType.TRIANGLE: lattice.triangles}, shot.x)
         grid.point_data["displacement"] = shot.x - start
+        grid.point_data["place"] = np.pad(lattice.places, ((0, 0), (0, 1)))
         grid.point_data["stress"] = shot.stress
         grid.point_data["shear stress"] = shear(shot.stress)
         grid.point_data["von Mises stress"] = equivalent(shot.stress)

@@ -14,6 +14,7 @@ from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic
 from coilset.model.standards.wires.steel import Elastic
+from coilset.model.standards.wires.wire import ROOM_TEMPERATURE
 from coilset.model.standards.working import endurance_warnings, gap_warnings, stress_warnings
 
 
@@ -44,6 +45,13 @@ def _estimated(case: Case) -> Iterator[Warning]:
             f"the hardening of {name} is an estimate from its minimum tensile "
             "strength; a test of the wire gives its own (coilset material fit)",
         )
+        if case.temperature not in (None, ROOM_TEMPERATURE):
+            yield Warning(
+                "temperature",
+                "temperature",
+                f"at {case.temperature:g} K G and E of {name} follow the standard's slope of G, but the strength is "
+                "that of 20 °C: how it decreases is unknown, so that a warm spring sets more than computed",
+            )
 
 
 def _supports(case: Case, spring: Spring) -> Iterator[Warning]:

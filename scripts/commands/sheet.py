@@ -23,8 +23,8 @@ from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.file import Surface
-from coilset.model.standards.wires.library import files
-from coilset.model.standards.wires.words import described
+from coilset.model.standards.wires.library import files, own_folder
+from coilset.model.standards.wires.words import WIRE_COLUMNS, described, table_row
 from coilset.model.standards.working import presetting_warning
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
@@ -109,10 +109,12 @@ def list_wires(name: str | None = None) -> None:
         for missing in files()[known.standard].missing:
             console.print(f"  not found: {missing}", soft_wrap=True)
         return
-    for name in names():
-        known = wire(name)
-        ranges = ", ".join(f"{low:.4g} to {high:.4g}" for low, high in known.ranges)
-        console.print(f"{name:28} {ranges + ' mm':24} {known.entry.strength.sure}", soft_wrap=True)
+    rows = [list(WIRE_COLUMNS), *(table_row(wire(name)) for name in names())]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        console.print("  ".join(map(str.ljust, row, widths)).rstrip(), soft_wrap=True)
+    console.print("no mark: checked against a second source; ': one source; ~: estimate; –: no data", soft_wrap=True)
+    console.print(f"your own wires: files of the same form in {own_folder()}", soft_wrap=True)
 
 
 def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:

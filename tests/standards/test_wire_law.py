@@ -99,3 +99,14 @@ def test_wrong_entry_of_a_wire():
 def test_unknown_diameter_is_refused():
     with pytest.raises(InputError, match=r"is unknown at 30 mm; it is given for 0\.3 to 20 mm"):
         wire_law("EN 10270-1 SH", 30.0)
+
+
+def test_a_warm_wire_is_softer_by_the_slope_of_its_standard_and_as_strong():
+    """EN 10270-1: 0.25 ‰ per kelvin; at 393.15 K 2.5 % less, E as G."""
+    cold, warm = wire_law("EN 10270-1 SH", 4.0), wire_law("EN 10270-1 SH", 4.0, temperature=393.15)
+    assert pytest.approx(0.975 * cold.G) == warm.G
+    assert pytest.approx(0.975 * cold.E) == warm.E
+    assert warm.yield_stress == cold.yield_stress
+    assert warm.reference_temperature == 393.15
+    with pytest.raises(InputError, match=r"temperature: 500 K: the slope of G is used from 233.15 to 473.15 K only"):
+        wire_law("EN 10270-1 SH", 4.0, temperature=500.0)

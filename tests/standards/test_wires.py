@@ -1,12 +1,13 @@
 """Wires by name against printed tables, and what a user can get wrong."""
 
+import re
 from itertools import pairwise
 
 import pytest
 
 from coilset.model.base.errors import InputError
 from coilset.model.base.yaml import read_data
-from coilset.model.standards.wires import names, wire
+from coilset.model.standards.wires import library, names, wire
 from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.library import FOLDER
 
@@ -212,3 +213,23 @@ def test_numbers_without_their_sources_are_refused():
     other = number | {"sure": "checked against a second source"}
     with pytest.raises(ValueError, match=r"needs 2 source\(s\), 1 given"):
         WireFile.model_validate(with_common(file | {"common": common | {"density": other}}))
+
+
+def test_own_wires_stand_beside_those_of_standards(tmp_path, monkeypatch):
+    folder = tmp_path / "coilset" / "wires"
+    folder.mkdir(parents=True)
+    ours = (library.FOLDER / "en10270-1.yaml").read_text(encoding="utf-8")
+    (folder / "mine.yaml").write_text(re.sub(r"(?m)^standard: .*$", "standard: Works", ours), encoding="utf-8")
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    library.files.cache_clear()
+    library._wires.cache_clear()
+    try:
+        assert wire("Works SH").strength(4.0) == wire("EN 10270-1 SH").strength(4.0)
+        (folder / "again.yaml").write_text(ours, encoding="utf-8")
+        library.files.cache_clear()
+        with pytest.raises(InputError, match=r"again.yaml: standard: 'EN 10270-1' is there already"):
+            library.files()
+    finally:
+        monkeypatch.undo()
+        library.files.cache_clear()
+        library._wires.cache_clear()

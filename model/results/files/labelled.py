@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from coilset.model.base.errors import reading
@@ -21,7 +22,7 @@ def labelled(folder: str | Path) -> xr.Dataset:
     Returns:
         Of a run: the columns of history.csv and seats.csv over `step`, all of points.nc, and each number of
         summary.json as `summary_…`, with `units`; its words and the case (JSON) are attributes. Of a slice: the
-        columns of history.csv and the summary. Of a sweep: sweep.nc.
+        columns of history.csv, the summary, and the stress of the section at the snapshots. Of a sweep: sweep.nc.
 
     Raises:
         InputError: if there are no such results in it, or a file of them cannot be read.
@@ -55,7 +56,29 @@ def _slice(folder: Path) -> xr.Dataset:
         data = table(folder / "history.csv")
     add_summary(data, summary)
     data.attrs["case"] = json.dumps(summary["origin"]["case"])
-    return data
+    return data.merge(_sections(folder / "fields"))
+
+
+def _sections(folder: Path) -> xr.Dataset:
+    """Stress of a slice's section at its snapshots; empty if there are none, or of an earlier version."""
+    import pyvista
+
+    files = sorted(folder.glob("*.vtu"))
+    grids = [pyvista.read(file) for file in files]
+    if not grids or any("place" not in grid.point_data for grid in grids):
+        return xr.Dataset()
+    stress = np.stack([np.asarray(grid.point_data["stress"]) for grid in grids])
+    place = np.asarray(grids[0].point_data["place"])[:, :2]
+    return xr.Dataset(
+        {
+            "section_stress": (("snapshot", "point", "component"), stress, {"units": "MPa"}),
+            "section_place": (("point", "across"), place, {"units": "mm", "about": "outward, upward"}),
+        },
+        {
+            "snapshot": [file.stem.partition("_")[2].replace("_", " ") for file in files],
+            "component": ["s11", "s22", "s33", "t12", "t13", "t23"],
+        },
+    )
 
 
 def add_summary(data: xr.Dataset, summary: Mapping[str, Any]) -> None:

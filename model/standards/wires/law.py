@@ -13,6 +13,7 @@ from coilset.model.standards.wires.library import wire
 from coilset.model.standards.wires.steel import STEEL, Elastic
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE, Wire
 
+SLOPE_RANGE = (233.15, 473.15)  # K, in which the slope of G is used: an estimate, no source gives its range
 SAME = 0.02  # maximum relative change of the diameter along one wire
 ASSUMPTIONS = (
     "estimate, until a test of the wire is given: saturating isotropic hardening (Voce, in the plastic work) through "
@@ -37,24 +38,28 @@ def poisson_ratio(elastic: Elastic) -> float:
     return elastic.young_modulus / (2 * elastic.shear_modulus) - 1
 
 
-def wire_law(name: str, diameter: float, spin: bool = False) -> Law:
+def wire_law(name: str, diameter: float, spin: bool = False, temperature: float | None = None) -> Law:
     """The law of a wire at a diameter, marked as an estimate.
 
     Args:
         name: name of a wire, as in `coilset.model.standards.wires.names()`.
         diameter: of the wire, mm.
         spin: see `Law`.
+        temperature: K; default is 20 °C. G decreases by the slope of the standard, E by the same part (an estimate);
+            the strength stays that of 20 °C.
 
     Returns:
-        Law at 20 °C, valid up to the plastic work at uniform strain.
+        Law at this temperature, valid up to the plastic work at uniform strain.
 
     Raises:
-        InputError: an unknown wire, or a diameter without a known strength.
+        InputError: an unknown wire, a diameter without a known strength, or a temperature beyond that of its slope.
     """
     known = wire(name)
     elastic, found = known.elastic(diameter), hardening_curve(known, diameter)
     strength = known.strength(diameter)
-    data = saturating(found, elastic.shear_modulus, poisson_ratio(elastic))
+    softer = 1.0 if temperature is None else _softened(known, temperature)
+    data = saturating(found, softer * elastic.shear_modulus, poisson_ratio(elastic))
+    data["temperatures"][0]["temperature"] = ROOM_TEMPERATURE if temperature is None else temperature
     data["validity"]["remark"] = ASSUMPTIONS.format(
         elastic=known.entry.elastic_limit.at(diameter) * strength,
         proof=known.entry.proof_stress.at(diameter) * strength,
@@ -69,6 +74,24 @@ def wire_law(name: str, diameter: float, spin: bool = False) -> Law:
     return Law(MaterialFile.model_validate(data), spin)
 
 
+def _softened(wire: Wire, temperature: float) -> float:
+    """G at a temperature over G at 20 °C.
+
+    Raises:
+        InputError: if the wire has no slope, or the temperature lies outside of where it is used.
+    """
+    if temperature == ROOM_TEMPERATURE:
+        return 1.0
+    slope = wire.entry.shear_modulus_decrease
+    if slope is None or slope.value is None:
+        raise InputError(f"how G of '{wire.name}' decreases is unknown; give a material file", "temperature")
+    low, high = SLOPE_RANGE
+    if not low <= temperature <= high:
+        problem = f"{temperature:g} K: the slope of G is used from {low:g} to {high:g} K only"
+        raise InputError(f"{problem}; give a material file for this temperature", "temperature")
+    return 1.0 - slope.value * (temperature - ROOM_TEMPERATURE)
+
+
 def case_law(case: Case, spring: Spring) -> Law:
     """The law of a case's material: from the library, from a file, or of a wire by its name and the spring's wire.
 
@@ -78,7 +101,7 @@ def case_law(case: Case, spring: Spring) -> Law:
     spin = case.mesh.section.spin
     if isinstance(case.material, str):
         return library.load(case.material, spin=spin)
-    return wire_law(case.material.wire, wire_diameter(spring), spin)
+    return wire_law(case.material.wire, wire_diameter(spring), spin, case.temperature)
 
 
 def case_elastic(case: Case, law: Law) -> Elastic:
@@ -89,12 +112,6 @@ def case_elastic(case: Case, law: Law) -> Elastic:
     """
     if isinstance(case.material, str):
         check_known(law, case.temperature, "temperature")
-    elif case.temperature not in (None, ROOM_TEMPERATURE):
-        raise InputError(
-            f"{case.temperature:g} K: the strength of a named wire is known at {ROOM_TEMPERATURE:g} K only, and its "
-            "standard does not say how it falls with temperature; give a material file for this temperature",
-            "temperature",
-        )
     E, G = law.moduli(law.reference_temperature if case.temperature is None else case.temperature)
     return Elastic(float(G), float(E), STEEL.density)
 

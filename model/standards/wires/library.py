@@ -1,5 +1,6 @@
-"""The wires that come with coilset."""
+"""The wires that come with coilset, and those in the user's folder, ~/.config/coilset/wires."""
 
+import os
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
@@ -14,12 +15,23 @@ from coilset.model.standards.wires.wire import Wire
 FOLDER = Path(__file__).parent
 
 
+def own_folder() -> Path:
+    """Folder of the user's own wire files, in the form of those beside this module; it need not exist."""
+    return Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config", "coilset", "wires")
+
+
 @cache
 def files() -> dict[str, WireFile]:
-    """The checked files by the name of their standard."""
-    read = {}
-    for path in sorted(FOLDER.glob("*.yaml")):
+    """The checked files by the name of their standard.
+
+    Raises:
+        InputError: if a file of the user is wrong, or has the name of a standard that is there already.
+    """
+    read: dict[str, WireFile] = {}
+    for path in (*sorted(FOLDER.glob("*.yaml")), *sorted(own_folder().glob("*.yaml"))):
         file = check_entries(with_common(read_data(path, "holds standard, sources and wires")), WireFile, path)
+        if file.standard in read:
+            raise InputError(f"'{file.standard}' is there already; give another name", "standard", path)
         read[file.standard] = file
     return read
 

@@ -28,6 +28,49 @@ LABELS = {
 }
 
 
+WIRE_COLUMNS = (
+    "wire",
+    "d, mm",
+    "Rm, MPa",
+    "G, GPa",
+    "E, GPa",
+    "dG, ‰/K",
+    "block/Rm",
+    "limit/Rm",
+    "Rp0.2/Rm",
+    "endurance",
+)
+MARKS = {"checked against a second source": "", "one source": "'", "estimate": "~"}
+
+
+def table_row(wire: Wire) -> list[str]:
+    """What is known of a wire, under WIRE_COLUMNS, from its least to its greatest diameter, with marks of certainty."""
+    entry, (low, high) = wire.entry, (wire.ranges[0][0], wire.ranges[-1][1])
+
+    def ends(known: Sourced | None, first: float, last: float, digits: int) -> str:
+        if known is None:
+            return "–"
+        texts = dict.fromkeys(f"{value:.{digits}g}" for value in (first, last))
+        return "–".join(texts) + MARKS[known.sure]
+
+    def over(number: Number | None, digits: int, factor: float = 1.0) -> str:
+        return "–" if number is None else ends(number, factor * number.at(low), factor * number.at(high), digits)
+
+    lines = ", ".join(f"{line.surface}{MARKS[line.sure]}" for line in entry.endurance)
+    return [
+        wire.name,
+        f"{low:.3g}–{high:.3g}",
+        ends(entry.strength, wire.strength(low), wire.strength(high), 4),
+        over(entry.shear_modulus, 3, 1e-3),
+        over(entry.young_modulus, 3, 1e-3),
+        over(entry.shear_modulus_decrease, 2, 1e3),
+        ends(entry.block_stress, entry.block_stress.at(low), entry.block_stress.at(high), 2),
+        over(entry.elastic_limit, 2),
+        over(entry.proof_stress, 2),
+        lines or "–",
+    ]
+
+
 def described(wire: Wire) -> list[tuple[str, str, str]]:
     """All data of a wire: quantity, value over the diameter d in mm, and certainty with sources."""
     found = []

@@ -3,12 +3,11 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
 from click import Command, Context
-from typer.core import TyperGroup
 
 from coilset.model.base.errors import InputError
 from coilset.scripts.compiling import announce_compiling
+from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ KNOWN = typer.Option([], metavar="NAME=VALUE", help="a constant or a property of
 UNKNOWN = typer.Option([], metavar="NAME", help="fit friction, compliance or offset of the tester, too")
 
 
-class MaterialGroup(TyperGroup):
+class MaterialGroup(typer.core.TyperGroup):
     """The commands of `coilset material`; `fit --spring` is `fit-springs`."""
 
     def resolve_command(self, ctx: Context, args: list[str]) -> tuple[str | None, Command | None, list[str]]:

@@ -1,0 +1,34 @@
+"""`coilset compare`: a measured spring beside the run of its case."""
+
+from pathlib import Path
+
+from rich.table import Table
+
+from coilset.model.figures.png import save
+from coilset.model.results.files.folder import make
+from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.target import results_folder
+from coilset.verification.comparison import compare as run_and_compare
+from coilset.verification.comparison import figure
+
+
+def compare(folder: str, out: str | None, force: bool) -> None:
+    """Run the case of a folder, print measured and computed numbers, and draw their ratios.
+
+    Raises:
+        InputError, SolveError: as `coilset.verification.comparison.compare`.
+    """
+    name = Path(folder).resolve().name
+    target = results_folder(out, name, "compare")
+    rows = run_and_compare(folder, target, force)
+    table = Table("quantity", "measured", "±", "computed", "±", "measured/computed", "", box=None, padding=(0, 2))
+    for row in rows:
+        error = "–" if row.computed_error != row.computed_error else f"{row.computed_error:.2g}"
+        numbers = (f"{row.measured:.5g}", f"{row.error:.3g}", f"{row.computed:.5g}", error, f"{row.ratio:.4f}")
+        table.add_row(row.quantity, *numbers, "met" if row.met else "not met")
+    console = Console()
+    console.print(table)
+    console.print(f"{sum(row.met for row in rows)} of {len(rows)} numbers met: they differ by no more than both errors")
+    make(target)
+    save(figure(rows, name), target / "comparison.png")
+    console.say(f"results and comparison.png in {target}")

@@ -1,0 +1,42 @@
+"""Measured numbers beside those of a run: verdicts, ratios and wrong tables."""
+
+import pytest
+import yaml
+
+from coilset.model.base.errors import InputError
+from coilset.verification.comparison import Compared, compare, figure
+
+CASE = {
+    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
+    "ends": "clamped",
+    "mesh": {"elements_per_turn": 8, "section": {"radial": 4, "angular": 12}},
+    "loading": [{"to": {"travel": 12.0}, "steps": 6}, {"to": {"force": 0}, "steps": 2}],
+}
+HEAD = "quantity;value;error;travel_mm;phase;turn\n"
+
+
+def test_met_within_both_errors():
+    assert Compared("set", 1.0, 0.05, 1.08, 0.04).met
+    assert not Compared("set", 1.0, 0.05, 1.08, 0.02).met
+    assert not Compared("set", 1.0, 0.05, 1.08, float("nan")).met
+
+
+def test_a_folder(tmp_path):
+    (tmp_path / "case.yaml").write_text(yaml.safe_dump(CASE))
+    rows = "force_N;185,0;10;12;1;\nset_mm;9;0,1;;;\nstress_+45°_MPa;0;500;;;1,25\n"
+    (tmp_path / "measured.csv").write_text(HEAD + rows, encoding="utf-8")
+    force, lost, stress = compare(tmp_path, tmp_path / "results")
+    assert force.met
+    assert force.ratio == pytest.approx(1.0, abs=0.06)
+    assert not lost.met
+    assert lost.computed < 8.0
+    assert stress.met
+    assert stress.computed != 0.0
+    assert (tmp_path / "results" / "summary.json").is_file()
+    assert figure([force, lost], "spring").axes[0].get_title() == "spring: 1 of 2 numbers met"
+    (tmp_path / "measured.csv").write_text(HEAD + "sett_mm;9;0,1;;;\n")
+    with pytest.raises(InputError, match=r"line 2: 'sett_mm' is none that this run has"):
+        compare(tmp_path, tmp_path / "results", overwrite=True)
+    (tmp_path / "measured.csv").write_text("quantity,value\nset_mm,9\n")
+    with pytest.raises(InputError, match="column error: is missing"):
+        compare(tmp_path, tmp_path / "results", overwrite=True)

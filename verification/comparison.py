@@ -1,0 +1,133 @@
+"""Measured springs beside the run of their case: measured over computed, with both errors.
+
+A folder holds `case.yaml` and `measured.csv`, one measured number a row: `quantity`, `value`, `error` (±, in the same
+unit), and where it needs them `travel_mm` and `phase` (of a `force_N`, phases from 1 on), `turn`, `angle` and `spot`
+(of a residual stress such as `stress_+45°_MPa`). Other quantities are numbers of summary.json. A number is met if
+measured and computed differ by no more than both errors together.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+import coilset.open
+from coilset.api import Case, Result, solve
+from coilset.model.base.columns import Columns, number, read_columns
+from coilset.model.base.errors import InputError
+from coilset.model.base.style import STYLE
+from coilset.model.results.diffraction import DIRECTIONS
+
+CASE, MEASURED, COLUMNS = "case.yaml", "measured.csv", "quantity, value, error"
+ERRORS = {
+    "force_N": "estimated_force_error_N",
+    "force_max_N": "estimated_force_error_N",
+    "set_mm": "estimated_set_error_mm",
+    "free_length_after_mm": "estimated_set_error_mm",
+}
+"""Entries of the summary with the error that the steps leave in a quantity."""
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One measured number beside the computed one, in the same unit; the errors are ±.
+
+    Attributes:
+        computed_error: of the steps, as the run estimates it; NaN where it does not.
+    """
+
+    quantity: str
+    measured: float
+    error: float
+    computed: float
+    computed_error: float
+
+    @property
+    def met(self) -> bool:
+        """Whether they differ by no more than both errors."""
+        known = 0.0 if np.isnan(self.computed_error) else self.computed_error
+        return abs(self.measured - self.computed) <= self.error + known
+
+    @property
+    def ratio(self) -> float:
+        """Measured over computed."""
+        return self.measured / self.computed if self.computed else float("nan")
+
+
+def compare(folder: str | Path, results: str | Path, overwrite: bool = False) -> list[Compared]:
+    """Run the case of a folder and compare it with what was measured.
+
+    Args:
+        folder: with case.yaml and measured.csv.
+        results: folder for the run.
+        overwrite: replace results that it holds.
+
+    Raises:
+        InputError: if a file is missing or wrong, or a quantity is none that the run has.
+        SolveError: if the run finds no equilibrium.
+    """
+    folder = Path(folder)
+    table = _checked(read_columns(folder / MEASURED))
+    result = solve(Case.read(folder / CASE))
+    result.save(results, overwrite)
+    return [_compared(table, row, line, result, Path(results)) for line, row in table.rows]
+
+
+def _checked(table: Columns) -> Columns:
+    for name in ("quantity", "value", "error"):
+        if name not in table.names:
+            raise table.lacks(name, COLUMNS)
+    values, errors = table.numbers("value"), table.numbers("error")
+    if not len(values) or (errors < 0.0).any():
+        raise InputError("give one measured number at least, and its error, 0 or more", "", table.path)
+    return table
+
+
+def _compared(table: Columns, row: dict[str, str], line: int, result: Result, folder: Path) -> Compared:
+    quantity, place = row["quantity"].strip(), f"line {line}"
+
+    def given(name: str, otherwise: float | None = None) -> float:
+        value = number(row.get(name))
+        if np.isnan(value) and otherwise is None:
+            raise InputError(f"'{quantity}' needs it as a number", f"{place}, column {name}", table.path)
+        return value if not np.isnan(value) or otherwise is None else otherwise
+
+    name = quantity
+    direction = quantity.removeprefix("stress_").removesuffix("_MPa")
+    if quantity == "force_N":
+        phase, travel = given("phase", 1.0), given("travel_mm")
+        computed, name = result.force_at(travel, int(phase) - 1), f"force_N at {travel:g} mm, phase {phase:g}"
+    elif quantity.startswith("stress_") and direction in DIRECTIONS:
+        turn, angle = given("turn"), given("angle", 0.0)
+        seen = coilset.open(folder).xray(turn, angle, given("spot", 0.0))  # type: ignore[operator]
+        computed, name = float(seen["stress"].sel(direction=direction)), f"{quantity} at turn {turn:g}, {angle:g}°"
+    else:
+        value = result.summary.get(quantity)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            known = "a number of summary.json, force_N, or stress_ with along, around, +45° or -45° and _MPa"
+            raise InputError(f"'{quantity}' is none that this run has; give {known}", f"{place}", table.path)
+        computed = float(value)
+    told = result.summary.get(ERRORS.get(quantity, ""))
+    error = abs(float(told)) if isinstance(told, int | float) else float("nan")
+    return Compared(name, given("value"), given("error"), computed, error)
+
+
+def figure(rows: list[Compared], name: str) -> Figure:
+    """Measured over computed of all numbers, with the measured error as a bar and the computed one as a band."""
+    with mpl.rc_context(STYLE):
+        sheet = Figure(figsize=(7.0, 1.2 + 0.34 * len(rows)), layout="constrained")
+        axes = sheet.add_subplot()
+        for k, row in enumerate(rows):
+            size = abs(row.computed) or float("nan")
+            if not np.isnan(row.computed_error):
+                axes.barh(k, 2.0 * row.computed_error / size, 0.7, 1.0 - row.computed_error / size, color="0.85")
+            axes.errorbar(row.ratio, k, xerr=row.error / size, fmt="o", ms=4, color="C0" if row.met else "C3")
+        axes.axvline(1.0, color="k", lw=0.8)
+        axes.set_yticks(range(len(rows)), [row.quantity for row in rows])
+        axes.invert_yaxis()
+        met = sum(row.met for row in rows)
+        axes.set(xlabel="measured over computed", title=f"{name}: {met} of {len(rows)} numbers met")
+        axes.grid(lw=0.3, axis="x")
+    return sheet
