@@ -53,7 +53,7 @@ class MaterialPoints:
         return np.tile(self._over_time.unstressed(6), (points, 1))
 
     def pass_time(self, start: Mapping[str, np.ndarray], end: Mapping[str, np.ndarray]) -> None:
-        """Let increments from now on lead from one state to another, whose `clock`s tell their time."""
+        """Let increments from now on lead from one state to another, with the times in their `clock` entries."""
         self._point_law = self._over_time.over(start, end)
 
     def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:

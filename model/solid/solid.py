@@ -33,7 +33,7 @@ class PointLaw(Protocol):
         ...
 
     def pass_time(self, start: Mapping[str, np.ndarray], end: Mapping[str, np.ndarray]) -> None:
-        """Let increments from now on lead from one state to another, whose `clock`s tell their time."""
+        """Let increments from now on lead from one state to another, with the times in their `clock` entries."""
         ...
 
     def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
@@ -120,13 +120,13 @@ class Solid(Body):
 
     @property
     def clock(self) -> np.ndarray:
-        """Hours since the start, temperature (K) and warm hours at the last equilibrium; see PassesTime."""
+        """Hours since the start, temperature (K) and warm hours at the last equilibrium; see Body."""
         if "clock" in self.state:
             return self.state["clock"].equilibrium
         return np.array([0.0, self.points.temperature, 0.0])
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
-        """Set the clock of the state on trial; see PassesTime."""
+        """Set the clock of the trial state; see Body."""
         if self.points.in_time is None:
             raise ValueError("the material neither creeps nor depends on the rate, so time has no effect on it")
         start = self.state["clock"].equilibrium

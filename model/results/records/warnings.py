@@ -253,9 +253,9 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
     if worst:
         largest = max(worst, key=lambda name: worst[name])
         cause = errors.largest(largest)
-        which = " and ".join(f"the {NUMBERS[name]} by {100 * part:.2g} %" for name, part in worst.items())
+        which = " and ".join(f"{100 * part:.2g} % of the {NUMBERS[name]}" for name, part in worst.items())
         message = (
-            f"{which} may be off, mostly because of the {CAUSES[cause]}, more than the case's accuracy of "
+            f"the estimated error is {which}, mostly because of the {CAUSES[cause]}, more than the case's accuracy of "
             f"{100 * asked:.2g} %; {MORE[cause]}"
         )
         yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], asked)
