@@ -97,8 +97,9 @@ def _past(rod: Rod, spring: SpringSpec) -> _Past:
     """What the sections of a rod went through; collective."""
     state = {name: rod.state[name].equilibrium for name in START}
     law = rod.sections.law_over_time.over(state, state)
+    plastic = _cold(law.plastic if isinstance(law, Parts) else law)
     return _Past(
-        law._replace(plastic=_cold(law.plastic)) if isinstance(law, Parts) else _cold(law),
+        law._replace(plastic=plastic) if isinstance(law, Parts) and not rod.law.returns_cold else plastic,
         bool(spring.made_by),
         _relief(rod, spring.relieved),
         None if spring.peening is None else _layer(rod, spring.peening),

@@ -15,6 +15,7 @@ by the principle of minimum potential energy their spring's is greater by U to f
 dU/ds at the same travel. The wire is compressed by 2U/F less than the travel says, which bounds the error of the set.
 """
 
+import itertools
 import logging
 import math
 from collections.abc import Callable, Sequence
@@ -29,6 +30,7 @@ from coilset.meshes.springs.stations import LEAST
 from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.errors import CoilsetError
 from coilset.model.case import Case
+from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.manufacture.initial_state import give_sections_past
 from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step
 from coilset.model.results.records.releases import Release, last_release
@@ -92,6 +94,8 @@ def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
     loading = []
     for number, phase in enumerate(case.loading):
         marks = [step.progress for step in steps if step.phase == number]
+        if any(after <= before for before, after in itertools.pairwise(marks)):
+            raise CoilsetError(f"phase {number + 1} was given another target on its way, which is not repeated")
         loading.append(phase.model_copy(update={"steps": [*marks[:-1], 1.0] if marks else 1}))
     update = {
         "mesh": mesh.model_copy(update={"elements_per_turn": coarse, "sagitta": sagitta}),
@@ -123,9 +127,9 @@ class _Watch:
     def __init__(self, companion: "Analysis") -> None:
         self.companion, self.rod, self.comm = companion, companion.rod, companion.comm
         section, rod, rule = companion.case.mesh.section, companion.rod, companion.rod.rule
-        n = len(rod.radius)
+        along = rod.line.element[: len(rod.radius)]  # the same elements on any number of ranks
         self.stride = max(1, math.ceil(rod.mesh.topology.index_map(1).size_global / FOLLOWED))
-        self.cells = np.arange(n)[self.stride // 2 :: self.stride] if n > self.stride // 2 else np.arange(min(n, 1))
+        self.cells = np.flatnonzero(along % self.stride == self.stride // 2)
         finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
         self.sections = make_sections(
             section.kind,
@@ -162,8 +166,11 @@ class _Watch:
         left = self._work(error, first) / unit
         still = abs(travel) < STILL * self.companion.spring.free_length
         now = left if still else self._work(error, change) / travel
-        parts = self.companion.system.last.contributions
-        energy = 0.5 * sum(float(part.pressure[part.bears] @ part.penetration[part.bears]) for part in parts)
+        layout, energy = self.companion.system.layout, 0.0
+        assert isinstance(layout, LineLayout)
+        for part in self.companion.system.last.contributions:
+            counted = part.bears & layout.begins_here(part.dofs)  # contacts that join two ranks' parts are on both
+            energy += 0.5 * float(part.pressure[counted] @ part.penetration[counted])
         self.seen.append(_Seen(step, now, left, sum_of_ranks(self.comm, energy)))
 
     def _follow(self) -> tuple[np.ndarray, np.ndarray]:

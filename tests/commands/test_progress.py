@@ -56,7 +56,10 @@ def test_json_has_the_rows_of_the_history_and_the_summary(said):
     steps, end = [event for event in events if event["event"] == "step"], events[-1]
     with open(folder / "history.csv", encoding="utf-8") as file:
         for row, step in zip(csv.DictReader(file), steps, strict=True):
-            assert {name: "" if step[name] is None else str(step[name]) for name in row} == row
+            at_the_end = {name for name in row if name in ("estimated_force_error_N", "estimated_height_error_mm")}
+            assert all(step[name] is None for name in at_the_end)  # until the companion has run
+            of_steps = {name: value for name, value in row.items() if name not in at_the_end}
+            assert {name: "" if step[name] is None else str(step[name]) for name in of_steps} == of_steps
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert end["summary"] == {name: value for name, value in summary.items() if name != "origin"}
     assert [step["done"] for step in steps] == pytest.approx([1 / 6, 2 / 6, 3 / 6, 3 / 4, 1.0])

@@ -54,10 +54,10 @@ def test_the_python_snippet_gives_the_stated_numbers(tmp_path):
     done = subprocess.run([sys.executable, "set.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     *steps, (set_mm, residual) = [tuple(map(float, line.split())) for line in done.stdout.splitlines()]
-    assert max(force for _, force in steps) == pytest.approx(stated("maximum force"), abs=0.005)
-    assert set_mm == pytest.approx(stated("set"), abs=5e-5)
+    assert max(force for _, force in steps) == pytest.approx(stated("maximum force"), abs=0.05)
+    assert set_mm == pytest.approx(stated("set"), abs=0.005)
     assert residual == pytest.approx(stated("maximum residual shear stress"), abs=0.005)
-    assert stated("free length before") - stated("free length after") == pytest.approx(stated("set"), abs=1e-4)
+    assert stated("free length before") - stated("free length after") == pytest.approx(stated("set"), abs=1e-9)
     assert max(travel for travel, _ in steps) == pytest.approx(
         stated("free length before") - stated("block height"), abs=1e-9
     )

@@ -30,4 +30,4 @@ def test_every_cell_runs_and_every_figure_is_drawn(tmp_path, monkeypatch):
     nbclient.NotebookClient(book, timeout=120, resources={"metadata": {"path": str(tmp_path)}}).execute(env=os.environ)
     outputs = [output for cell in book.cells if cell.cell_type == "code" for output in cell.outputs]
     assert sum("image/png" in output.get("data", {}) for output in outputs) == 8
-    assert any("xarray.Dataset" in output.get("data", {}).get("text/plain", "") for output in outputs)
+    assert any("xarray.Run" in output.get("data", {}).get("text/plain", "") for output in outputs)

@@ -6,6 +6,8 @@ import numpy as np
 class Elastic:
     """Isotropic elasticity; also serves where only the interface is needed."""
 
+    in_time = None  # neither creep nor rate
+
     def __init__(self, G=84000.0, nu=0.29):
         self.G, self.nu = G, nu
         self.C = np.zeros((6, 6))

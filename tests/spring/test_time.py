@@ -124,13 +124,14 @@ def viscous(tmp_path):
 def test_a_fast_press_bears_more_and_then_relaxes(viscous):
     """Infinitely slow without seconds, as without the entry; fast, the force is higher, and falls to it in a hold.
 
-    To 1.9 % above in six steps, 1.4 in 12 and 1.0 in 24.
+    To 2.5 % above in six steps, 2.0 in 12 and 1.6 in 24; 0.3 in six with the thesis's element.
+    The law with a rate is integrated otherwise: before the coils close forces differ by 1.5e-4, in 12 steps by 3.7e-5.
     """
     press = {"to": {"travel": 20}, "steps": 6}
     still = analysis_of([press], material=viscous, temperature=293.15).run().steps[-1]
     plain = analysis_of([press], material="linear_isotropic", temperature=293.15).run().steps[-1]
     slow = analysis_of([press | {"seconds": 1e9}], material=viscous, temperature=293.15).run().steps[-1]
-    assert still.force_N == pytest.approx(plain.force_N, rel=1e-6)
+    assert still.force_N == pytest.approx(plain.force_N, rel=2e-4)  # another integration
     assert plain.force_N < slow.force_N < 1.02 * plain.force_N
     program = [press | {"seconds": 1.0}, {"hold": {"hours": 1e6}, "steps": 12}]
     steps = analysis_of(program, material=viscous, temperature=293.15).run().steps
@@ -139,7 +140,7 @@ def test_a_fast_press_bears_more_and_then_relaxes(viscous):
     forces = [step.force_N for step in steps[5:]]
     assert (np.diff(forces) < 0.0).all()
     assert forces[-1] < 0.98 * forces[0]
-    assert forces[-1] < 1.02 * plain.force_N
+    assert forces[-1] < 1.03 * plain.force_N
 
 
 @pytest.mark.parametrize(
@@ -195,7 +196,7 @@ def test_examples_say_what_presetting_is_worth():
 
 
 def test_the_error_of_fast_steps_is_known(viscous):
-    """It is of first order in the step, and larger than that of the law without the rate."""
+    """In size and sign; and it is larger than that of the law without the rate."""
 
     def pressed(steps, **fast):
         phase = {"to": {"travel": 12}, "steps": steps} | fast
@@ -204,7 +205,7 @@ def test_the_error_of_fast_steps_is_known(viscous):
     coarse, fine, still = pressed(6, seconds=1.0), pressed(24, seconds=1.0), pressed(6)
     error = fine.force_N + fine.steps_force_error_N - coarse.force_N
     assert coarse.steps_force_error_N == pytest.approx(error, rel=0.15)
-    assert coarse.steps_force_error_N > 5.0 * still.steps_force_error_N
+    assert abs(coarse.steps_force_error_N) > 5.0 * abs(still.steps_force_error_N)
 
 
 def test_the_error_of_steps_without_time_is_known_after_a_heating():

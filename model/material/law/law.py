@@ -164,8 +164,12 @@ class Law:
     def point_law(self, temperature: float | None = None) -> np.ndarray | Parts:
         """What the kernels take as the law without time: the parameter array alone, if the return map suffices."""
         parameters = self.parameters(temperature)
-        by_parts = self.n_terms or self.spin or self.is_adiabatic or self.data.rate
-        return self.parts(parameters) if by_parts else parameters
+        return self.parts(parameters) if self.is_adiabatic or not self.returns_cold else parameters
+
+    @property
+    def returns_cold(self) -> bool:
+        """Does the return map suffice where plastic work heats nothing and no time passes?"""
+        return not (self.n_terms or self.spin or self.data.rate)
 
     def parts(self, parameters: np.ndarray | None = None) -> Parts:
         """What the point problem takes as the law, without time; `parameters` may be those of another temperature."""
