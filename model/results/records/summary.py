@@ -142,11 +142,13 @@ def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, Any]:
 def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
     """Shear stress on the wire's surface at the inside of the coil, MPa, positive as in a compressed spring; its turn.
 
-    The value of largest magnitude in the middle turns.
+    The value of largest magnitude in the middle turns; of several that are equal but for rounding, as in a spring whose
+    halves are alike, the first.
     """
     among = is_middle(setup)
     middle = setup.inside.shear(snapshot.surface_state, snapshot.components)[among]
-    at = int(np.argmax(np.abs(middle)))
+    size = np.abs(middle)
+    at = int(np.argmax(size >= (1.0 - surface.TIE) * size.max()))
     return float(middle[at]), float(setup.section_turns[among][at])
 
 
