@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Mapping, Sequence
-from contextlib import closing
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -117,5 +116,4 @@ class Study:
 
     def close(self) -> None:
         """Release the folder."""
-        with closing(self._journal):
-            pass
+        self._journal.close()
