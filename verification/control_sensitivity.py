@@ -23,7 +23,7 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import SolveError
 from coilset.model.case import read_case
-from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.settings import Growth, NewtonControl, StepControl
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES

@@ -10,15 +10,15 @@ from scipy.spatial.transform import Rotation
 from coilset.meshes.frame import frame_mesh
 from coilset.meshes.springs.placement import Placement
 from coilset.model.contact.base import Contact
-from coilset.model.equilibrium.contact_limit import ContactLimit
-from coilset.model.equilibrium.continuation import Continuation
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.layout import SEATS, LineLayout
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.methods import rod_method
-from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.newton.contact_limit import ContactLimit
+from coilset.model.equilibrium.newton.methods import rod_method
+from coilset.model.equilibrium.newton.newton import Newton, Start
+from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.continuation import Continuation
 from coilset.model.equilibrium.settings import NewtonControl
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.layout import SEATS, LineLayout
+from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.system import System
 from coilset.model.material.law.law import Law
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import DiskRule
@@ -38,8 +38,8 @@ class Frame:
         law: material law.
         rule: DiskRule.
         held: (node, components) pairs that stay fixed; components are 0-2 for x, y, z, 3-5 for rotations.
-        method, options: of coilset.model.equilibrium.methods, and further PETSc options; the tolerance is the thesis's
-            1e-7.
+        method, options: of coilset.model.equilibrium.newton.methods, and further PETSc options; the tolerance is the
+            thesis's 1e-7.
         contacts: kinds of contact.
         placement: of sections beside the chords, as for Rod.
 

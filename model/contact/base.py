@@ -4,7 +4,7 @@ Degrees of freedom are numbered independently of the partition: 3 i + k is the d
 those of the n stations come x, y, z and rotations θx, θy, θz of the bottom and of the top seat, 3 n + j, and after
 these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Every rank evaluates the contacts that act
 on its own degrees of freedom: those of its part of the wire, and those of other parts near it. It gets the
-positions that these depend on, see coilset.model.equilibrium.halo.
+positions that these depend on, see coilset.model.equilibrium.system.halo.
 
 Every kind is a `Contact`.
 """

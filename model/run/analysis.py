@@ -15,10 +15,10 @@ from coilset.model.case import Case
 from coilset.model.case.phases import Phase, TimePhase, drives_at, heads_of
 from coilset.model.case.targets import check_steps, check_targets, check_times
 from coilset.model.contact.build import build_contacts, seats_at
-from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
-from coilset.model.equilibrium.stability import Stability
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.path.program import LoadProgram, ProgramPosition, Stage, StepTaken
+from coilset.model.equilibrium.path.stability import Stability
+from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.system import System
 from coilset.model.manufacture.initial_state import give_past
 from coilset.model.results.files.checkpoint import Saved
 from coilset.model.results.records.balance import imbalance

@@ -15,15 +15,15 @@ from coilset.model.case.heads import DamperSpec, HeadsSpec
 from coilset.model.case.phases import heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.contact.base import Contact
-from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
-from coilset.model.equilibrium.continuation import Continuation
-from coilset.model.equilibrium.heads import Heads, Holding
-from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.methods import Method, rod_method
-from coilset.model.equilibrium.newton import Newton
-from coilset.model.equilibrium.stability import Stability
-from coilset.model.equilibrium.step_error import StepError
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.newton.contact_limit import ContactLimit, free_penetration
+from coilset.model.equilibrium.newton.methods import Method, rod_method
+from coilset.model.equilibrium.newton.newton import Newton
+from coilset.model.equilibrium.path.continuation import Continuation
+from coilset.model.equilibrium.path.stability import Stability
+from coilset.model.equilibrium.path.step_error import StepError
+from coilset.model.equilibrium.system.heads import Heads, Holding
+from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.system import System
 from coilset.model.manufacture.initial_state import past_warnings
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.record import ContactRecord, ForceLine, Limits, Setup

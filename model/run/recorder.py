@@ -11,11 +11,11 @@ from coilset.model.base.agreement import max_of_ranks
 from coilset.model.base.warning import Warning
 from coilset.model.body.state import Where
 from coilset.model.case.phases import AnyPhase, TimePhase
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.heads import Heads
-from coilset.model.equilibrium.program import StepTaken
-from coilset.model.equilibrium.stability import Stability, Weakest
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.program import StepTaken
+from coilset.model.equilibrium.path.stability import Stability, Weakest
+from coilset.model.equilibrium.system.heads import Heads
+from coilset.model.equilibrium.system.system import System
 from coilset.model.results.records.buckling import axis_offset, buckling
 from coilset.model.results.records.record import BucklingMode, Frame, Result, SeatReactions, Setup, Snapshot, Step
 from coilset.model.results.records.seat_reactions import faint_force, mean_torque, seat_reactions

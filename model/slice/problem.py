@@ -11,7 +11,7 @@ from petsc4py import PETSc
 
 from coilset.model.base.compat import NOT_A_NUMBER
 from coilset.model.base.errors import SolveError
-from coilset.model.equilibrium.snes import solve
+from coilset.model.equilibrium.newton.snes import solve
 from coilset.model.slice.bordered import BorderedMatrix
 from coilset.model.slice.contact import NoContact, SelfContact, SliceContact
 from coilset.model.slice.forms import RISE, TURN, assemble

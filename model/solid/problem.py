@@ -10,16 +10,16 @@ from petsc4py import PETSc
 
 from coilset.meshes.solid import SolidMesh
 from coilset.model.body.body import Moment
-from coilset.model.equilibrium.continuation import Continuation
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.iteration import Iteration
-from coilset.model.equilibrium.layout import Layout
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.methods import MULTIGRID, SYMMETRIC, solid_method
-from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.newton.iteration import Iteration
+from coilset.model.equilibrium.newton.methods import MULTIGRID, SYMMETRIC, solid_method
+from coilset.model.equilibrium.newton.newton import Newton, Start
+from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.continuation import Continuation
+from coilset.model.equilibrium.path.step_control import Path
 from coilset.model.equilibrium.settings import NewtonControl, StepControl
-from coilset.model.equilibrium.step_control import Path
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.layout import Layout
+from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.system import System
 from coilset.model.solid.heads import Head, Motion, Reaction
 from coilset.model.solid.multigrid import VertexMultigrid, any_free_vertex
 from coilset.model.solid.solid import PointLaw, Solid
@@ -33,7 +33,7 @@ class SolidProblem:
     Args:
         wire: SolidMesh.
         points: the law at the points, as `MaterialPoints`.
-        solver: ``direct``, ``multigrid``, ``multigrid-cg`` or ``auto``, see coilset.model.equilibrium.methods.
+        solver: ``direct``, ``multigrid``, ``multigrid-cg`` or ``auto``, see coilset.model.equilibrium.newton.methods.
         precision: ε of (6.3.1): out-of-balance forces relative to the change of the heads' forces in the step.
         options: further PETSc options, which override those of the solver.
         steps: StepControl.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.model.equilibrium.release import release
+from coilset.model.equilibrium.path.release import release
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.problem import SolidProblem
 

@@ -7,10 +7,10 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from coilset.model.case import read_case
-from coilset.model.equilibrium.branch_switching import Snap
-from coilset.model.equilibrium.load import Drag, Load
+from coilset.model.equilibrium.path.branch_switching import Snap
+from coilset.model.equilibrium.path.stability import Stability
 from coilset.model.equilibrium.settings import StepControl
-from coilset.model.equilibrium.stability import Stability
+from coilset.model.equilibrium.system.load import Drag, Load
 from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES

@@ -8,8 +8,8 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import SolveError
 from coilset.model.case import read_case
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.newton import Start
+from coilset.model.equilibrium.newton.newton import Start
+from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 

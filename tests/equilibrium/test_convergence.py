@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, reason_in_words
-from coilset.model.equilibrium.iteration import CRAWL, CRAWLS, Iteration
-from coilset.model.equilibrium.methods import METHODS
+from coilset.model.equilibrium.newton.convergence import EquilibriumTest, Reason, reason_in_words
+from coilset.model.equilibrium.newton.iteration import CRAWL, CRAWLS, Iteration
+from coilset.model.equilibrium.newton.methods import METHODS
 from coilset.model.equilibrium.settings import NewtonControl
 
 DIVERGENCE = 1e4

@@ -8,9 +8,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.model.body.state import State, Where
-from coilset.model.equilibrium.guess import Guess
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.step_control import Position
+from coilset.model.equilibrium.path.guess import Guess
+from coilset.model.equilibrium.path.step_control import Position
+from coilset.model.equilibrium.system.load import Load
 
 LOAD = SimpleNamespace(held=np.array([], dtype=int))
 pytestmark = pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="needs no ranks")

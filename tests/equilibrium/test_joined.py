@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.model.equilibrium.joined import add_matrices, add_vectors, join_patterns
+from coilset.model.equilibrium.system.joined import add_matrices, add_vectors, join_patterns
 
 SIZE, RANGE = 40, slice(9, 33)  # unknowns, and those whose rows are here
 NUMBERS = np.arange(SIZE, dtype=np.int32)  # the small matrices call them by their numbers

@@ -12,11 +12,11 @@ from scipy.optimize import brentq
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.equilibrium import factors, matrix
-from coilset.model.equilibrium.methods import METHODS, rod_method
-from coilset.model.equilibrium.newton import Newton
+from coilset.model.equilibrium.newton.methods import METHODS, rod_method
+from coilset.model.equilibrium.newton.newton import Newton
+from coilset.model.equilibrium.newton.snes import SnesFactory
 from coilset.model.equilibrium.settings import MethodName
-from coilset.model.equilibrium.snes import SnesFactory
+from coilset.model.equilibrium.system import factors, matrix
 from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import abramowitz9
@@ -73,7 +73,7 @@ ALL_METHODS = f"""
 from mpi4py import MPI
 from coilset.model.run.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.equilibrium.methods import METHODS
+from coilset.model.equilibrium.newton.methods import METHODS
 
 kept = []  # until PETSc ends: what is gone has taken its options along
 for method in METHODS:

@@ -9,10 +9,10 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.case import Case
-from coilset.model.equilibrium.branch_switching import Snap
-from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.path.branch_switching import Snap
+from coilset.model.equilibrium.path.continuation import Continuation
+from coilset.model.equilibrium.path.stability import negative_pivots
 from coilset.model.equilibrium.settings import StepControl
-from coilset.model.equilibrium.stability import negative_pivots
 from coilset.model.results.records.buckling import axis_offset, buckling, critical_travel, vanishing
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise

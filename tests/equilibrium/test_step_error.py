@@ -9,7 +9,7 @@ from mpi4py import MPI
 from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
 from coilset.model.case.case import read_case_data
-from coilset.model.equilibrium.step_error import Estimate
+from coilset.model.equilibrium.newton.outcome import Estimate
 from coilset.model.material import library
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis

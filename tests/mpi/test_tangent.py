@@ -5,7 +5,7 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.case import read_case
-from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.system.load import Load
 from coilset.model.run.analysis import Analysis
 
 pytestmark = pytest.mark.mpi

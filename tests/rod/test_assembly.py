@@ -7,8 +7,8 @@ from dolfinx.fem.petsc import assemble_matrix
 from petsc4py import PETSc
 
 from coilset.model.contact.base import Contribution
-from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.matrix import TangentMatrix
+from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.matrix import TangentMatrix
 from coilset.model.rod import element_kernel, forms
 from coilset.model.rod.elements import MIXED, THESIS
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.matrix import TangentMatrix
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.matrix import TangentMatrix
+from coilset.model.equilibrium.system.system import System
 from coilset.model.material import library
 from coilset.model.rod.elements import MIXED, THESIS
 

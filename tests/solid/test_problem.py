@@ -9,7 +9,7 @@ from coilset.meshes import solid
 from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
 from coilset.model.base.compat import to_ranks
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.equilibrium import methods
+from coilset.model.equilibrium.newton import methods
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.material import library
 from coilset.model.solid.heads import Motion

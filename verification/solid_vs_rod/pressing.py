@@ -88,7 +88,7 @@ def run_solid(
     Args:
         case: PressedSection.
         comm: MPI communicator.
-        solver: see `coilset.model.equilibrium.methods`.
+        solver: see `coilset.model.equilibrium.newton.methods`.
         report: called with a line after every station.
         on_full, on_end: called with the SolidProblem at full travel and after release, for pictures.
 

@@ -18,12 +18,12 @@ from coilset.meshes.springs.placement import polygon_nodes, section_placement
 from coilset.meshes.springs.shapes import Barrel
 from coilset.meshes.springs.spring import Spring, SpringSpec
 from coilset.model.base.style import STYLE
-from coilset.model.equilibrium.continuation import Continuation
-from coilset.model.equilibrium.heads import Heads, Holding
-from coilset.model.equilibrium.layout import SEATS, LineLayout
-from coilset.model.equilibrium.methods import rod_method
-from coilset.model.equilibrium.newton import Newton
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.newton.methods import rod_method
+from coilset.model.equilibrium.newton.newton import Newton
+from coilset.model.equilibrium.path.continuation import Continuation
+from coilset.model.equilibrium.system.heads import Heads, Holding
+from coilset.model.equilibrium.system.layout import SEATS, LineLayout
+from coilset.model.equilibrium.system.system import System
 from coilset.model.figures.png import save
 from coilset.model.material import library
 from coilset.model.material.law.law import Law

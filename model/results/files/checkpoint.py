@@ -17,10 +17,10 @@ from coilset.model.base.warning import Warning
 from coilset.model.body.body import Moment
 from coilset.model.body.state import State
 from coilset.model.case import Case
-from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.program import ProgramPosition, Stage
+from coilset.model.equilibrium.path.program import ProgramPosition, Stage
+from coilset.model.equilibrium.path.step_control import Position
 from coilset.model.equilibrium.settings import Drive
-from coilset.model.equilibrium.step_control import Position
+from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.results.files import state_file
 from coilset.model.results.files.folder import make, whole
 from coilset.model.results.files.step_journal import StepJournal

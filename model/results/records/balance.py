@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from coilset.model.contact.resultants import station_forces, station_moments
-from coilset.model.equilibrium.heads import Heads
-from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.heads import Heads
+from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.system import System
 from coilset.model.results.records.record import Snapshot
 
 

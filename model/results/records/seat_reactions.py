@@ -11,9 +11,9 @@ from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
 from coilset.model.contact.bearing import bearing_on_seat, pressures_on, turns_without
 from coilset.model.contact.resultants import Wrench
-from coilset.model.equilibrium.heads import Heads
-from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.heads import Heads
+from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.system import System
 from coilset.model.results.records.record import ForceLine, SeatReaction, SeatReactions
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.kernels import exponential

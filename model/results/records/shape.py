@@ -6,7 +6,7 @@ from numba import njit
 from coilset.meshes.springs.ends import touching_pitch
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.contact.seat import Seat
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.system import System
 
 PASSING = 0.5  # of the wire diameter: with a smaller touching pitch, coils pass each other by their shape
 

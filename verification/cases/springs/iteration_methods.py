@@ -29,9 +29,9 @@ from mpi4py import MPI
 from coilset.model.base.errors import SolveError
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, read_case
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.methods import METHODS, rod_method
-from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.newton.methods import METHODS, rod_method
+from coilset.model.equilibrium.newton.newton import Newton, Start
+from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.results.records.record import Snapshot, Step
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES

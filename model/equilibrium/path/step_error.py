@@ -15,14 +15,14 @@ close or open the path of strains is taken for kinked.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from mpi4py import MPI
 
 from coilset.model.body.state import Where
-from coilset.model.equilibrium.heads import Heads
+from coilset.model.equilibrium.newton.outcome import Estimate
 from coilset.model.equilibrium.settings import StepControl
+from coilset.model.equilibrium.system.heads import Heads
 
 ORDER = 3
 # what is remembered: maximum force, N, travel of the first step of all, mm, and how many contact elements are closed
@@ -31,23 +31,6 @@ GREATEST, FIRST, CLOSED = range(3)
 # is held to the accuracy of the equilibrium only.
 STILL, STILL_FORCE = 1e-12, 1e-6
 ROUNDING = 1e-12  # of E A: forces up to there are none, as those of a free spring that is heated
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """What the length of the steps has left wrong.
-
-    Attributes:
-        force: true force at this height, less the one found, N; height: true height at this force, less the one found,
-            mm. Not a number where they are not known.
-        share: what this step has brought in, over what it may.
-        factor: of its size, for a step that brings in what it may.
-    """
-
-    force: float
-    height: float
-    share: float
-    factor: float
 
 
 class StepError:

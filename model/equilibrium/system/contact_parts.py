@@ -10,8 +10,8 @@ from coilset.model.base.agreement import max_of_ranks
 from coilset.model.body.lever import Swing
 from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution
 from coilset.model.contact.memory import Memory
-from coilset.model.equilibrium.halo import Halo
-from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.system.halo import Halo
+from coilset.model.equilibrium.system.layout import LineLayout
 
 
 class ContactParts:

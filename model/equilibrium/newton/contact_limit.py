@@ -8,7 +8,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.settings import NewtonControl
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.system import System
 
 
 class ContactLimit:

@@ -14,15 +14,15 @@ from typing import TypeVar
 from petsc4py import PETSc
 
 from coilset.model.base.errors import SolveError
-from coilset.model.equilibrium.branch_switching import Snap
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.guess import Guess
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.newton.newton import Newton, Start
+from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.branch_switching import Snap
+from coilset.model.equilibrium.path.guess import Guess
+from coilset.model.equilibrium.path.stability import Stability
+from coilset.model.equilibrium.path.step_control import ON_MARK, Path, StepSizes
+from coilset.model.equilibrium.path.step_error import StepError
 from coilset.model.equilibrium.settings import StepControl
-from coilset.model.equilibrium.stability import Stability
-from coilset.model.equilibrium.step_control import ON_MARK, Path, StepSizes
-from coilset.model.equilibrium.step_error import StepError
+from coilset.model.equilibrium.system.load import Load
 
 log = logging.getLogger("coilset.steps")
 Reading = TypeVar("Reading")

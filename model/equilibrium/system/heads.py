@@ -13,9 +13,9 @@ import numpy as np
 
 from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
-from coilset.model.equilibrium.layout import SEATS, LineLayout
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.layout import SEATS, LineLayout
+from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.system import System
 from coilset.model.rotations.kernels import logarithm
 from coilset.model.rotations.vectors import rotation_matrix
 

@@ -12,11 +12,11 @@ from petsc4py import PETSc
 
 from coilset.model.body.body import Body
 from coilset.model.contact.base import Contribution
-from coilset.model.equilibrium.aij import AijEntries
-from coilset.model.equilibrium.element_entries import ElementEntries, set_rows
-from coilset.model.equilibrium.factors import FILL_REDUCING, NATURAL
-from coilset.model.equilibrium.joined import add_matrices, join_patterns, number_pairs
-from coilset.model.equilibrium.layout import Layout, LineLayout
+from coilset.model.equilibrium.system.aij import AijEntries
+from coilset.model.equilibrium.system.element_entries import ElementEntries, set_rows
+from coilset.model.equilibrium.system.factors import FILL_REDUCING, NATURAL
+from coilset.model.equilibrium.system.joined import add_matrices, join_patterns, number_pairs
+from coilset.model.equilibrium.system.layout import Layout, LineLayout
 
 
 class TangentMatrix:

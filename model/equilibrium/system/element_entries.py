@@ -5,8 +5,8 @@ from numba import njit
 from petsc4py import PETSc
 
 from coilset.model.body.body import Body
-from coilset.model.equilibrium.aij import AijEntries
-from coilset.model.equilibrium.layout import Layout
+from coilset.model.equilibrium.system.aij import AijEntries
+from coilset.model.equilibrium.system.layout import Layout
 
 
 class ElementEntries:

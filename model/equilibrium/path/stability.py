@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.factors import lu, negative_pivots
-from coilset.model.equilibrium.iteration import Iteration
-from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.newton.iteration import Iteration
+from coilset.model.equilibrium.system.factors import lu, negative_pivots
+from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.load import Load
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
 ITERATIONS = 12

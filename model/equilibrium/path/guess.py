@@ -13,9 +13,9 @@ rates differ more than they would along a smooth one, and r₂ alone is the bett
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.step_control import Position
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.path.step_control import Position
+from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.system import System
 
 
 class Guess:

@@ -11,16 +11,16 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.base.compat import NOT_A_NUMBER
-from coilset.model.equilibrium import factors
-from coilset.model.equilibrium.contact_limit import ContactLimit
-from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, imbalance
-from coilset.model.equilibrium.line_search import WorkSearch
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.matrix import TangentMatrix
-from coilset.model.equilibrium.methods import ARC_LENGTH, FIRST, Method
+from coilset.model.equilibrium.newton.contact_limit import ContactLimit
+from coilset.model.equilibrium.newton.convergence import EquilibriumTest, Reason, imbalance
+from coilset.model.equilibrium.newton.line_search import WorkSearch
+from coilset.model.equilibrium.newton.methods import ARC_LENGTH, FIRST, Method
+from coilset.model.equilibrium.newton.snes import SnesFactory, solve
 from coilset.model.equilibrium.settings import NewtonControl
-from coilset.model.equilibrium.snes import SnesFactory, solve
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system import factors
+from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.matrix import TangentMatrix
+from coilset.model.equilibrium.system.system import System
 
 each_iteration = logging.getLogger("coilset.iterations")  # silent unless its level is set
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from coilset.model.contact.base import Contact, Known, TrialPositions
 from coilset.model.contact.curve import STENCIL
-from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.system.layout import LineLayout
 
 NUMBER, PLACE, ROTATION = 0, slice(1, 4), slice(4, 7)  # columns of what is sent for a station
 BOX, MOTION, SPAN, LONGEST = slice(6), slice(6, 12), slice(12, 15), 15  # in what a rank sends of its part

@@ -19,11 +19,11 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.base.agreement import sum_of_ranks
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.load import Drag, Load
-from coilset.model.equilibrium.newton import Start
+from coilset.model.equilibrium.newton.newton import Start
+from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.stability import Stability, Weakest
 from coilset.model.equilibrium.settings import StepControl
-from coilset.model.equilibrium.stability import Stability, Weakest
+from coilset.model.equilibrium.system.load import Drag, Load
 
 log = logging.getLogger("coilset.steps")
 FASTER = 4.0  # maximum factor of a change of drag, and of a step's length over the intended one

@@ -9,7 +9,7 @@ from numba import njit
 
 from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.extremes import largest
-from coilset.model.equilibrium.layout import Layout
+from coilset.model.equilibrium.system.layout import Layout
 
 
 @dataclass(frozen=True)

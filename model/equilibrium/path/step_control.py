@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 from coilset.model.base.errors import SolveError
 from coilset.model.body.body import Moment
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.settings import StepControl
+from coilset.model.equilibrium.system.load import Load
 
 ON_MARK = 1e-9  # of a regular step: what is nearer to a mark is on it
 

@@ -1,6 +1,6 @@
 """The iteration methods as named sets of PETSc options: those of chapter 4.4 for the rod, Newton's for the solid.
 
-Only the step length of `newton` is our own code, see coilset.model.equilibrium.line_search.
+Only the step length of `newton` is our own code, see coilset.model.equilibrium.newton.line_search.
 
 A method's matrix is the tangent; the methods differ in how often it is assembled, and how it is modified in between.
 Those that keep it renew it after RENEWAL iterations within a step: when contacts close or a plastic spring is released,
@@ -16,7 +16,7 @@ from coilset.model.base.compat import LONGEST_STEP
 from coilset.model.base.errors import InputError
 
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu"}
-ON_RANKS = "coilset.model.equilibrium.factors.GatheredLU"
+ON_RANKS = "coilset.model.equilibrium.system.factors.GatheredLU"
 RENEWAL = 10
 # The zero of the out-of-balance work may lie beyond a whole correction: PETSc's searches may lengthen it at will.
 UNLIMITED = {LONGEST_STEP: 1e8}
@@ -35,7 +35,7 @@ FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}  # only meets the prescrib
 
 METHODS: dict[str, dict[str, Any]] = {  # each MethodName
     # Newton-Raphson (4.4.4)
-    # its corrections are scaled by coilset.model.equilibrium.line_search
+    # its corrections are scaled by coilset.model.equilibrium.newton.line_search
     "newton": {"snes_type": "newtonls", "snes_linesearch_type": "basic", **UNLIMITED, "snes_max_it": 30, **DIRECT},
     # (4.4.5), with a line search for the zero of the out-of-balance work along the direction
     "modified-newton": {

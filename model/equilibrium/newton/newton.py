@@ -11,13 +11,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.contact_limit import ContactLimit
-from coilset.model.equilibrium.convergence import Outcome, Reason, reason_in_words
-from coilset.model.equilibrium.iteration import Iteration
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.methods import Method
+from coilset.model.equilibrium.newton.contact_limit import ContactLimit
+from coilset.model.equilibrium.newton.convergence import Reason, reason_in_words
+from coilset.model.equilibrium.newton.iteration import Iteration
+from coilset.model.equilibrium.newton.methods import Method
+from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.settings import NewtonControl
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.system import System
 
 log = logging.getLogger("coilset.steps")
 

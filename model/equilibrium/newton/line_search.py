@@ -7,7 +7,7 @@ minimum of the energy.
 
 A correction that presses coils deeply into each other is shortened to what the contacts allow, and the next one finds
 them closed. If it was the one that meets the prescribed increments, equilibrium is found there first: the step is
-solved in parts, see coilset.model.equilibrium.newton.
+solved in parts, see coilset.model.equilibrium.newton.newton.
 """
 
 import math
@@ -17,10 +17,10 @@ import numpy as np
 from numba import njit
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.contact_limit import ContactLimit
-from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.newton.contact_limit import ContactLimit
 from coilset.model.equilibrium.settings import NewtonControl
-from coilset.model.equilibrium.system import System
+from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.system import System
 
 
 class StepLength(NamedTuple):

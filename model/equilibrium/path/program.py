@@ -11,13 +11,13 @@ import numpy as np
 from coilset.model.base.errors import SolveError
 from coilset.model.body.body import Moment
 from coilset.model.contact.base import SEAT_DOFS
-from coilset.model.equilibrium.continuation import Continuation
-from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.heads import AXIAL, Heads
-from coilset.model.equilibrium.layout import SEATS
-from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.continuation import Continuation
+from coilset.model.equilibrium.path.step_control import Path, Position
 from coilset.model.equilibrium.settings import Drive
-from coilset.model.equilibrium.step_control import Path, Position
+from coilset.model.equilibrium.system.heads import AXIAL, Heads
+from coilset.model.equilibrium.system.layout import SEATS
+from coilset.model.equilibrium.system.load import Load
 
 log = logging.getLogger("coilset.steps")
 START = Moment(0.0, 0.0)
