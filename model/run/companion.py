@@ -8,8 +8,8 @@ falls with the second. No knowledge of the element enters.
 A few of its sections are followed with a **finer rule** along the same strains. The work of the difference of their
 forces, s_finer − s, on the deformation of the step, over its travel, is the error of the force; on the elastic
 deformation of the first step it is what is left at the release, as in
-`coilset.model.equilibrium.path.step_error`. Wire with a past gets it with the finer rule, too, and the difference of its
-surface's shear counts as well.
+`coilset.model.equilibrium.path.step_error`. Wire with a past gets it with the finer rule, too, and the difference of
+its surface's shear counts as well.
 
 **Contact**: bodies that lie in each other by p under pressures q hold the energy U = ½ Σ q p. Rigid ones hold none, and
 by the principle of minimum potential energy their spring's is greater by U to first order: its force is greater by
