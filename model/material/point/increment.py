@@ -151,8 +151,8 @@ def _room(n: int, terms: int) -> Room:
     return Room(
         np.zeros((VECTORS, n)),
         np.zeros((TERMS, terms)),
-        np.empty((4, 4)),
-        np.empty((4, max(n, 2))),
+        np.empty((MOST, MOST)),
+        np.empty((MOST, MOST + 3)),
         np.zeros((3, n, n)),
         np.empty((MOST + n, 2, n)),
         np.empty((MOST + n, terms)),
