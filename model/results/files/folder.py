@@ -25,6 +25,7 @@ DERIVED = (
     "buckling_mode.png",
     "section.png",
     "goodman.png",
+    "fatigue.png",
     "animation.gif",
     "report.html",
 )
