@@ -370,7 +370,7 @@ def modes(run: Case | str | Path, at: str = "end", count: int = 10, glued: bool 
 
     >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}, steps: 2}]", "accuracy=none"])
     >>> print(f"{modes(case, count=1).frequencies[0]:.0f} Hz")
-    0 Hz
+    427 Hz
     """
     from coilset.model.vibration.loaded import after_results, after_run, loaded_modes
 

@@ -122,6 +122,6 @@ def _of_levers(layout: LineLayout, sizes: Any) -> PETSc.Mat:
         if lever.u.max() < layout.owned:
             pair = (layout.index_map.local_to_global(dofs.astype(np.int32)) for dofs in (lever.u, lever.rotations))
             rows, columns = (dofs.astype(PETSc.IntType) for dofs in pair)
-            matrix.setValues(rows, columns, lever.swing.first)
+            matrix.setValues(rows, columns, np.ascontiguousarray(lever.swing.first))
     matrix.assemble()
     return matrix

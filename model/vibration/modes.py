@@ -155,7 +155,9 @@ def _shape(layout: LineLayout, vector: PETSc.Vec) -> np.ndarray:
 
 def _effective(layout: LineLayout, mass: PETSc.Mat, vectors: list[PETSc.Vec]) -> tuple[np.ndarray, np.ndarray]:
     """Effective masses of modes and the whole ones, see `Modes`."""
-    n, x = len(layout.station_dofs), layout.gather(layout.rod.x)
+    n, x = len(layout.station_dofs), layout.gather(layout.rod.x).copy()
+    for station, arm in layout.rod.arms.items():  # its unknowns are those of the head's point
+        x[station] -= layout.gather(layout.rod.state["R"].equilibrium)[station] @ arm
     rigid = np.zeros((4, n, 6))
     rigid[[0, 1, 2], :, [0, 1, 2]] = 1.0
     rigid[3, :, 0], rigid[3, :, 1], rigid[3, :, 5] = -x[:, 1], x[:, 0], 1.0

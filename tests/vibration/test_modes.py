@@ -42,7 +42,7 @@ def test_straight_clamped_rod():
     """Axial and torsion are standing half waves; bending follows from the same twelve equations with κ = τ = 0."""
     length, radius, n = 200.0, 2.5, 80
     frame = clamped(length, radius, n, elastic(E, NU))
-    found = natural_modes(frame.system, frame.load, DENSITY, 12)
+    found = natural_modes(frame.system, frame.load, DENSITY, 16)
     c = np.sqrt(np.array([E, G]) / (DENSITY * TONNE)) / (2.0 * length)
     axial, torsion = (found.frequencies[np.abs(found.frequencies - one).argmin()] for one in c)
     assert [axial, torsion] == pytest.approx(c, rel=1e-4)
@@ -67,8 +67,8 @@ def test_the_error_is_of_second_order_in_the_element():
 
 @pytest.mark.mpi
 def test_helical_spring():
-    """The first eight frequencies against the twelve equations of the helix, without and with curved sections."""
-    for kind, tolerance in (("plane", 2e-4), ("curved", 5e-3)):
+    """The first eight frequencies against the twelve equations of the helix; curved sections are stiffer by (d/D)²."""
+    for kind, tolerance in (("plane", 2e-4), ("curved", 0.5 * (5.0 / 40.0) ** 2)):
         found = modes_of(spring(4.0, 12.0, kind), 8).frequencies
         law = library.load("elastic")
         helix = HelicalRod.coil(5.0, 40.0, 4.0, 12.0, young=law.E, shear=law.G, density=DENSITY)
