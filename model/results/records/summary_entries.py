@@ -145,7 +145,6 @@ class Summary:
     load_loss_percent: float | None = entry(
         "%",
         "part of its force that the spring had lost when time last passed at constant height; `null` if none did",
-        of_slice=False,
     )
     coiling_diameter_mm: float | None = entry(
         "mm",
