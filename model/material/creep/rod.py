@@ -26,7 +26,7 @@ from coilset.model.material.point.increment import GAMMA, advance
 from coilset.model.material.point.rod import Vector, active, inner
 
 WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²
-# A stage's end: stress, its equivalent σ and direction d, θ, the Creep of σ, and ∂c/∂σ − θ at constant time; iterations,
+# A stage's end: stress, its equivalent σ and direction d, θ, the Creep of σ, ∂c/∂σ − θ at constant time; iterations,
 # -1 if there is none.
 Stage = namedtuple("Stage", "stress sigma d theta of normal count")
 # The inverse of C⁻¹ + ∂x/∂s: diag(D) − k v vᵀ.

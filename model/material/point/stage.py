@@ -55,7 +55,7 @@ NEUTRAL = Active(True, False, True, False)
 # each strain.
 MOST = 4
 Room = namedtuple("Room", "v of J r ways kept kept_of")
-OFF, CORRECTION, STEP = MOST, MOST + 1, MOST + 2  # columns of r behind J⁻¹: residuals, J⁻¹ times them, and the last step
+OFF, CORRECTION, STEP = MOST, MOST + 1, MOST + 2  # columns of r behind J⁻¹: residuals, J⁻¹ times them, the last step
 METRIC, MODULUS, TRIAL, ONSET, TURNED, SHARE, STRESS, ACTIVE, FLOW, D_STRESS, D_ACTIVE, D_FLOW, VECTORS = range(13)
 THETA, ZETA, FADING, D_ZETA, D_FADING, D_THETA, TERMS = range(7)  # FADING: γ
 # Values at the unknowns: v, k and slopes in b; κ; |n|, n:P, |P|, σ and the creep strain; b, a, q, χ as they are used.
