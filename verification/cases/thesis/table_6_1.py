@@ -17,8 +17,8 @@ Iterations: one step per row; a step starts from the scaled increments of the pr
 zero of the out-of-balance work along their direction (`cp`); MNR keeps its matrix over the step. NR has the consistent
 tangent. By displacement it is the program's own, whose damping alone keeps the large steps beyond w/l = 0.2 on course
 (`cp` needs up to 12 there); by load it searches with `cp`, where overshooting saves an iteration. It takes at most 7,
-where the thesis needed up to 16: 7 at 0.35, 0.45 and 0.5 by displacement and at 0.8 by load, of steps in which points
-change between the kinds of flow (`coilset.model.material.point.stage`), at which the tangent jumps.
+where the thesis needed up to 16: 7 at 0.35, 0.45 and 0.5 by displacement and at 0.8 by load, where the return map with
+spin took 6.
 """
 
 from typing import Any, NamedTuple
