@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from coilset.model.base.errors import InputError
 from coilset.model.material import library, points
 from coilset.model.material.creep import rod as creep_rod
 from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
@@ -330,14 +329,6 @@ def test_both_ways_through_a_rods_point(entries, yielding):
             np.testing.assert_allclose(C, D, atol=1e-6 * law.E)
             n += creep_rod._without_yield(over, state, (de[0], de[1], de[2]), new, C) >= 0
     assert n == 20 if not yielding else 5 <= n < 20
-
-
-def test_creep_belongs():
-    """Not by time hardening where plastic work heats the points."""
-    law = law_of(CREEP | {"hardening": "time"})
-    heating = {"dissipated": 0.9, "density": 7.85e-9, "specific_heat": 4.7e8}
-    with pytest.raises(InputError, match="points that plastic work heats have no common time; give strain"):
-        Law(MaterialFile.model_validate(law.data.model_dump() | {"heating": heating}))
 
 
 def test_warm_hours():
