@@ -213,7 +213,7 @@ class LoadProgram:
         )
 
     def _reachable(self, stage: Stage) -> str:
-        """The last equilibrium as a target in place of the stage's own, rounded to four digits towards its beginning."""
+        """The last equilibrium as another target, rounded to four digits towards where the stage began."""
         by_force, control = stage.kind == "force", self.control
         begin, value = (self._force, control.force) if by_force else (self._height, control.height)
         if stage.value is None or value in (0.0, begin):
