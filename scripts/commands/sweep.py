@@ -31,6 +31,7 @@ if TYPE_CHECKING:  # at run time only after the environment is saved
 
 REPORT_SECONDS = 30.0  # seconds between progress lines without a terminal
 SHOWN_FAILURES = 5
+KEPT_FROM = 10_000  # cases: from here on reading them again is worth a file
 
 
 @dataclass(frozen=True)
@@ -94,8 +95,8 @@ def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> P
     if options.force and options.continues:
         raise InputError("discards what other options keep; give one of them", "--overwrite")
     shard = options.shard
-    refuse_obstacles(out, [shard.journal, "sweep.nc", "sweep.parquet", "workers.log"])
-    plan = Plan(sweep_file)
+    refuse_obstacles(out, [shard.journal, "plan.npz", "sweep.nc", "sweep.parquet", "workers.log"])
+    plan = Plan(sweep_file, out / "plan.npz")
     if not (options.force or options.continues) and journals(out):
         raise InputError("holds a sweep; use --resume to finish it, or --overwrite to overwrite it", "--out", out)
     with making(out):
@@ -103,6 +104,8 @@ def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> P
     held.enter_context(only_run(out) if shard.count == 1 else shard.claimed(out))
     if options.force:
         clear(out, ("sweep.nc", "sweep.parquet", "report.html", *(path.name for path in journals(out))))
+    if shard.number == 1 and len(plan) >= KEPT_FROM:
+        plan.keep(out / "plan.npz")
     return plan
 
 
