@@ -68,8 +68,9 @@ class Strings(Sequence[str]):
     """
 
     def __init__(self, keys: Iterable[str] | np.ndarray) -> None:
-        packed = isinstance(keys, np.ndarray)
-        self.array = keys if packed else np.fromiter((key.encode() for key in keys), dtype=f"S{KEY_LENGTH}")
+        if not isinstance(keys, np.ndarray):
+            keys = np.fromiter((key.encode() for key in keys), dtype=f"S{KEY_LENGTH}")
+        self.array: np.ndarray = keys
 
     def add(self, key: str) -> None:
         """Append one."""

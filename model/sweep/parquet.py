@@ -21,13 +21,14 @@ if TYPE_CHECKING:
 ROWS = 20_000  # of a row group, which is what memory holds at a time
 
 
-def write(path: str | Path, plan: Plan, folder: str | Path) -> int | None:
+def write(path: str | Path, plan: Plan, records: Records) -> int | None:
     """Write one row for each record: case, model, inputs, key, status, reason, warnings, seconds, responses.
 
     Args:
         path: the file.
-        plan, folder: the sweep; its journals are read one record after the other. Rows are in their order, not in that
-            of the plan: `case` is the number of the case there, from 0.
+        plan: of the sweep.
+        records: of its tasks, which are read one after the other. Rows are in their order, not in that of the plan:
+            `case` is the number of the case there, from 0.
 
     Returns:
         The number of rows; None if pyarrow is not installed, and nothing is written.
@@ -39,18 +40,18 @@ def write(path: str | Path, plan: Plan, folder: str | Path) -> int | None:
         return None
     schema, count = _schema(pa, plan), 0
     with whole(path) as partial, pq.ParquetWriter(partial, schema, compression="zstd") as writer:
-        for rows in _batches(plan, folder):
+        for rows in _batches(plan, records):
             count += len(rows)
             writer.write_table(pa.Table.from_pylist(rows, schema=schema))
     return count
 
 
-def _batches(plan: Plan, folder: str | Path) -> Iterator[list[dict[str, Any]]]:
+def _batches(plan: Plan, records: Records) -> Iterator[list[dict[str, Any]]]:
     keys = plan.keys.array
     order = np.argsort(keys)
     rows: list[dict[str, Any]] = []
     numeric = _numeric(plan)
-    for record in Records(folder, (key for _row, key, _model in plan.tasks())):
+    for record in records:
         rod = corrects(plan, record)
         key = (record["key"] + "u" if rod else record["key"]).encode()
         first, last = (np.searchsorted(keys, key, side, sorter=order) for side in ("left", "right"))

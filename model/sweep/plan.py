@@ -137,9 +137,14 @@ class Plan:
             CoilsetError: if the file cannot be written.
         """
         if not path.exists() or self._kept(path) is None:
-            parts = {"recipe": self._recipe(), "notices": self.notices, "sources": self._sources}
             with whole(path) as partial:
-                np.savez(partial, keys=self.keys.array, **{name: np.array(part) for name, part in parts.items()})
+                np.savez(
+                    partial,
+                    recipe=self._recipe(),
+                    keys=self.keys.array,
+                    notices=np.array(self.notices, dtype=str),
+                    sources=self._sources,
+                )
 
     def _kept(self, path: Path) -> Strings | None:
         """The keys of a file, if it is of this plan, and the cases that first name a material or file still have

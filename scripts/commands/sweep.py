@@ -18,7 +18,7 @@ from coilset.model.results.files.folder import clear, making, refuse_obstacles
 from coilset.model.sweep import multifidelity
 from coilset.model.sweep.engines.pool import Pool
 from coilset.model.sweep.engines.processes import Workers
-from coilset.model.sweep.journal import Journal, journals, read_records
+from coilset.model.sweep.journal import Journal, Records, journals, read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import Limits, finished, missing, run
 from coilset.model.sweep.shards import Shard
@@ -188,14 +188,16 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     data = dataset.collect(plan, out)
     clear(out, ("report.html", *FILES))  # of other cases
     dataset.write(out / "sweep.nc", data)
-    if parquet.write(out / "sweep.parquet", plan, out) is None:
+    records = Records(out, (key for _row, key, _model in plan.tasks()))
+    clear(out, ("sweep.parquet",))
+    if parquet.write(out / "sweep.parquet", plan, records) is None:
         console.warn("sweep.parquet is not written: the package pyarrow is not installed")
     if data.sizes["case"] < len(plan):
         console.say(f"sweep.nc and figures show {data.sizes['case']} of {len(plan)} cases; sweep.parquet has all")
     files, problems = draw(out, plan, data) if options.pictures else ([], [])
-    for line in multifidelity.lines(plan, data):
+    for line in multifidelity.lines(plan, data, out / "sweep.parquet"):
         console.print(line)
-    counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}
+    counts = records.counts
     table = Table(show_header=True, box=None, padding=(0, 2))
     for column in ("", "minimum", "mean", "maximum"):
         table.add_column(column, justify="left" if not column else "right")
