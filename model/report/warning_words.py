@@ -6,6 +6,7 @@ KINDS = {
     "buckling": "the spring is slender and may buckle without a guide",
     "coils slipped": "coils slip past each other",
     "contact mesh": "the mesh is coarse for contact",
+    "creep": "the load loss is extrapolated beyond the tests of creep",
     "duration": "the run takes long",
     "earlier name": "an entry has its earlier name",
     "endurance": "the stress range exceeds the fatigue data",

@@ -11,6 +11,7 @@ from coilset.meshes.springs.ends import ENDS
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
+from coilset.model.material.law.file import CreepTests
 from coilset.model.results.records.frame import Frame
 from coilset.model.rod.elements import Element
 from coilset.model.section import surface
@@ -247,12 +248,14 @@ class Limits:
         penetration: usual maximum penetration, mm.
         accuracy: requested error due to the step size, over the maximum force and over the set; None: it is
             not estimated.
+        creep: range of the tests that the constants of creep are from, None if it is unknown or nothing creeps.
     """
 
     plastic_work: float
     strength: float | None
     penetration: float
     accuracy: float | None
+    creep: CreepTests | None = None
 
 
 @dataclass(frozen=True)
