@@ -36,7 +36,7 @@ from coilset.model.run.effort import Effort, machine_memory
 from coilset.model.runtime.threads import Threads
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.wires.law import case_elastic, case_strength
+from coilset.model.standards.wires.law import case_allowed, case_elastic, case_strength
 
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
 AUGMENTED = 2.0  # times the maximum penetration: up to there contacts are augmented although the case does not say so
@@ -179,7 +179,8 @@ def build_setup(
         case_strength(case, spring),
         PENETRATION * 2.0 * least_radius,
         case.steps_error,
-        law.creep.tests if law.creep else None,
+        *case_allowed(case, spring),
+        creep=law.creep.tests if law.creep else None,
     )
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
     elastic = case_elastic(case, law)
@@ -202,6 +203,7 @@ def build_setup(
         warnings=warnings,
         coiling_diameter=coiling_diameter,
         force_line=build_force_line(case),
+        strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
     )
 
 
