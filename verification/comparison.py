@@ -21,6 +21,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.results.diffraction import DIRECTIONS
 
+DRAWN = 121  # points of a phase's characteristic
 CASE, MEASURED, COLUMNS = "case.yaml", "measured.csv", "quantity, value, error"
 ERRORS = {
     "force_N": "estimated_force_error_N",
@@ -65,7 +66,7 @@ class Comparison:
 
     Attributes:
         rows: the numbers.
-        characteristic: travel (mm) and force (N) of each phase, from the end of the one before, shape (2, steps + 1).
+        characteristic: ascending travel (mm) and force (N) of each phase, between its steps too, shape (2, DRAWN).
         force_error: of the maximum force by all causes, N; NaN where the run does not estimate it.
     """
 
@@ -95,10 +96,14 @@ def compare(folder: str | Path, results: str | Path, overwrite: bool = False) ->
 
 
 def _characteristic(result: Result) -> list[np.ndarray]:
-    points = np.insert([result.travel, result.force], 0, 0.0, axis=1)
-    of_step = result.data["phase"].to_numpy()
-    ends = [np.flatnonzero(of_step == phase) + 1 for phase in np.unique(of_step)]
-    return [points[:, rows[0] - 1 : rows[-1] + 1] for rows in ends]
+    travel, of_step = np.append(0.0, result.travel), result.data["phase"].to_numpy()
+    found = []
+    for phase in np.unique(of_step).tolist():
+        rows = np.flatnonzero(of_step == phase)
+        reached = travel[rows[0] : rows[-1] + 2]
+        way = np.linspace(reached.min(), reached.max(), DRAWN)
+        found.append(np.array([way, [result.force_at(one, phase) for one in way.tolist()]]))
+    return found
 
 
 def _error(result: Result, quantity: str) -> float:
