@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 KNOTS = 257  # of a curved piece: an ellipse of one piece is met within 1e-9 of its size
 MANY = 24  # Gauss points on a piece, for its length and area
 STRAIGHT = 1e-9  # deviation from the chord, over its length, of a piece that is a straight line
-SMOOTH = 1024  # corners of the polygon by which a boundary is drawn and touches another
+SMOOTH = 4096  # corners of the polygon by which a boundary is drawn and touches another
 NOTHING = 1e-9  # depth of a cut, and length of a piece, that count as none
 
 
@@ -109,28 +109,45 @@ class Boundary:
         """Of the section, without its hole."""
         return self.signed_area * (1.0 - self.hole**2)
 
-    def points(self, number: int) -> np.ndarray:
-        """About so many points on the curve in order around it, with all ends of pieces, shape (n, 2)."""
+    def points(self, number: int, on_straight: bool = True) -> np.ndarray:
+        """About so many points on the curve in order around it, with all ends of pieces, shape (n, 2).
+
+        Args:
+            number: of points.
+            on_straight: whether some are on straight pieces; else only their ends are.
+        """
         total, points = self.lengths.sum(), []
         for piece, length in zip(self.pieces, self.lengths, strict=True):
-            some = 1 if len(piece.x) == 2 else max(2, round(number * length / total))
+            ends = len(piece.x) == 2 and not on_straight
+            some = 1 if ends else max(2, round(number * length / total))
             points.append(piece(np.arange(some) / some))
         return np.concatenate(points)
 
     @cached_property
     def polygon(self) -> np.ndarray:
         """The curve as a polygon, anticlockwise, shape (n, 2)."""
-        return self.points(SMOOTH)
+        return self.points(SMOOTH, False)
 
     @cached_property
+    def _extent(self) -> tuple[np.ndarray, np.ndarray]:
+        marks = []
+        for piece in self.pieces:
+            for k in range(2):
+                one = CubicHermiteSpline(piece.x, piece(piece.x)[:, k], piece(piece.x, 1)[:, k])
+                turning = one.derivative().roots(extrapolate=False)
+                marks.append(piece(np.append(turning[np.isfinite(turning)], [0.0, 1.0])))
+        points = np.concatenate(marks)
+        return points.min(axis=0), points.max(axis=0)
+
+    @property
     def low(self) -> np.ndarray:
         """Minimum y and z."""
-        return self.polygon.min(axis=0)
+        return self._extent[0]
 
-    @cached_property
+    @property
     def high(self) -> np.ndarray:
         """Maximum y and z."""
-        return self.polygon.max(axis=0)
+        return self._extent[1]
 
     def support(self, directions: np.ndarray) -> np.ndarray:
         """h(n) = max b · n: distance of the tangent across unit vectors n from the origin, shape (m, 2) → (m,)."""
@@ -145,7 +162,7 @@ class Boundary:
         Args:
             number: of points on the section's boundary.
         """
-        points = self.points(number)
+        points = self.points(number, False)
         hull = points[ConvexHull(points).vertices]
         sides = np.roll(hull, -1, axis=0) - hull
         sides = np.concatenate([sides, -sides])

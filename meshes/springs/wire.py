@@ -1,5 +1,6 @@
 """The entry `spring.wire`: a cross-section that is not a circle, and how it is turned to the coil."""
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Self
 
@@ -114,10 +115,16 @@ class WireSpec(Strict):
         """
         from coilset.meshes import section_shapes as shapes  # gmsh: not where wire is round
 
-        makers = {"oval": shapes.Oval, "rectangle": shapes.rectangle, "egg": shapes.Egg, "trapezoid": shapes.Trapezoid}
         if self.outline is not None:
             return shapes.Curve.read(self.outline, self.smooth)
-        make = {**makers, "tube": shapes.Tube}[self.shape]
+        makers: dict[str, Callable[..., Outline]] = {
+            "oval": shapes.Oval,
+            "rectangle": shapes.rectangle,
+            "egg": shapes.Egg,
+            "trapezoid": shapes.Trapezoid,
+            "tube": shapes.Tube,
+        }
+        make = makers[self.shape]
         try:
             return make(**dict(getattr(self, self.shape)))
         except InputError as error:

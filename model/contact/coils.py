@@ -180,7 +180,8 @@ class Coils(Contact):
 
 def outwards(points: WirePoints, stations: np.ndarray) -> np.ndarray:
     """Horizontal unit vectors across the wire, away from the z axis, shape (m, 2)."""
-    along = np.einsum("mk,mki->mi", curve_weights(points.line.cubic[points.element], points.xi, 1), stations[points.stations])
+    slope = curve_weights(points.line.cubic[points.element], points.xi, 1)
+    along = np.einsum("mk,mki->mi", slope, stations[points.stations])
     across = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(along[:, 0], along[:, 1])[:, None]
     return across * np.sign(np.sum(across * points.at(stations)[:, :2], axis=1))[:, None]
 

@@ -2,8 +2,8 @@
 
 Two convex sections, neither turned against the other, touch where the one's centre is on the boundary of their
 difference D = {b − b′} about the other's. N(q) = |q| κ(α) in the direction α from outwards to upwards is the norm of
-which 2 r D is the ball, with r half the height of the wire: N = 2 r on the boundary, and ∇N is normal to it. A part of q
-along the wire counts as a distance does,
+which r D is the ball of size 2 r, with r half the height of the wire: N = 2 r on its boundary, and ∇N is normal to it.
+A part of q along the wire counts as a distance does,
 
     N(q) = √(N₂² + t²),   N₂ = ρ κ(α),   ∇N₂ = κ e_ρ + κ′ e_α,   ∇²N₂ = (κ + κ″)/ρ e_α e_αᵀ.
 

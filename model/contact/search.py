@@ -126,9 +126,7 @@ def station_slope(p: np.ndarray, curves: np.ndarray, j: int, shape: Shape) -> fl
 
 
 @njit(cache=True, error_model="numpy")
-def closest(
-    p: np.ndarray, curves: np.ndarray, j: int, begin: int, end: int, shape: Shape
-) -> tuple[int, float, bool]:
+def closest(p: np.ndarray, curves: np.ndarray, j: int, begin: int, end: int, shape: Shape) -> tuple[int, float, bool]:
     """Closest point to `p` along the wire, sought from station `j` between the stations `begin` and `end`.
 
     Returns:

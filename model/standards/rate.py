@@ -6,13 +6,15 @@ import numpy as np
 
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.section.outline import Outlined
 
 
 def torsion_rate(spring: Spring, shear_modulus: float) -> float:
     """Initial rate for torsion of the wire alone and small pitch, N/mm.
 
     Castigliano's `1/R = 64/G ∫ r³/d⁴ dt` over the active turns: R = G d⁴/(8 D³ n) of EN 13906-1 for a cylinder, and
-    R = G d⁴/(2 n (D1 + D2)(D1² + D2²)) for a cone (Wahl, Mechanical Springs, chapter on conical springs).
+    R = G d⁴/(2 n (D1 + D2)(D1² + D2²)) for a cone (Wahl, Mechanical Springs, chapter on conical springs). Of wire that
+    is not round π d⁴/32 is its torsion constant.
 
     Args:
         spring: `Spring`.
@@ -21,7 +23,10 @@ def torsion_rate(spring: Spring, shear_modulus: float) -> float:
     start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
     breaks = np.concatenate([[start], spring.breaks[(spring.breaks > start) & (spring.breaks < end)], [end]])
     compliance = functions.integral(lambda t: spring.mean_radius(t) ** 3 / spring.wire_diameter(t) ** 4, breaks).sum()
-    return float(shear_modulus / (64 * compliance))
+    rate = float(shear_modulus / (64 * compliance))
+    if spring.section is None:
+        return rate
+    return rate * Outlined(spring.section).warping().torsion / (0.5 * np.pi)  # J of a disk of radius 1
 
 
 def pitch_compliance(angle: float, nu: float, ends: Literal["turning", "held"] = "turning") -> float:

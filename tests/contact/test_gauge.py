@@ -39,7 +39,7 @@ def test_a_flat_face_counts_its_distance():
     table = gauge_table(section("rectangle"))
     for aside in (0.0, 1.0, -4.0):
         N, slope, bend = at([OUT[0] * aside, OUT[1] * aside, 5.2], table)
-        assert N == pytest.approx(5.2, rel=1e-9)
+        assert pytest.approx(5.2, rel=1e-9) == N
         assert slope == pytest.approx([0.0, 0.0, 1.0], abs=1e-9)
         assert np.abs(bend[:, 2]).max() < 1e-6
 
@@ -60,7 +60,7 @@ def test_wires_touch_where_the_gauge_is_their_height(name, angle):
 def test_derivatives_of_the_gauge(name):
     """∇N and ∇²N by central differences, not near a corner's ends, where κ″ jumps."""
     table, step = gauge_table(section(name, 0.1)), 1e-5
-    for q in np.random.default_rng(2).normal(size=(12, 3)) + [0.0, 0.0, 3.0]:
+    for q in np.random.default_rng(2).normal((0.0, 0.0, 3.0), size=(12, 3)):
         _, slope, bend = at(q, table)
         around = [(at(q + step * e, table), at(q - step * e, table)) for e in np.eye(3)]
         assert slope == pytest.approx([(a[0] - b[0]) / (2 * step) for a, b in around], abs=1e-8)

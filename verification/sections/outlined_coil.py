@@ -37,9 +37,7 @@ class OutlinedCoil:
         R, h = 0.5 * mean_diameter, pitch / (2.0 * np.pi)
         j = float(np.hypot(R, h))
         place = straight(1)._replace(curvature=np.full((1, 2), R / j**2), torsion=np.full((1, 2), h / j**2))
-        self.sections = make_sections(
-            kind, law, law.parameters(), rule, np.array([0.5 * height]), place, degree=degree
-        )
+        self.sections = make_sections(kind, law, law.parameters(), rule, np.array([0.5 * height]), place, degree=degree)
         none = np.empty(0)
         self._coil = Coil(none, R, h, j, none, none, none, R / j**2, none, none, False, False)
         self.start = self.sections.initial_state() | {"strain": np.zeros((1, 2, 6))}

@@ -68,7 +68,7 @@ def rectangle_torsion(width: float, height: float) -> float:
 
 def closed_forms(study: Study) -> None:
     """Torsion constants of straight wire, mm⁴."""
-    exact = {
+    exact: dict[str, tuple[Outline, float]] = {
         "ellipse 4 × 5": (Oval(4.0, 5.0), np.pi * (2.0 * 2.5) ** 3 / (2.0**2 + 2.5**2)),
         "rectangle 6 × 3": (rectangle(6.0, 3.0), rectangle_torsion(6.0, 3.0)),
         "tube 5 × 3": (Tube(5.0, 3.0), np.pi / 32.0 * (5.0**4 - 3.0**4)),
@@ -124,14 +124,14 @@ def size(outline: Outline, index: float) -> tuple[float, float, float]:
     return mean, height + travel / 0.9, travel
 
 
-def coil(outline: Outline, index: float, points: int = 160, kind: str = "curved") -> np.ndarray:
+def coil(outline: Outline, index: float, points: int = 160, kind: str = "curved", degree: int = 3) -> np.ndarray:
     """`QUANTITIES` by the rod's section."""
     section, height = unit(outline)
     mean, pitch, travel = size(outline, index)
     place = np.array([[PART * section.boundary.high[0], 0.0]])  # one more point, which weighs nothing
     rule = section.rule(points)
     rule = DiskRule(np.concatenate([rule.points, place]), np.append(rule.weights, 0.0), rule.name, section)
-    one = OutlinedCoil(library.load("ck15"), kind, rule, height, mean, pitch)
+    one = OutlinedCoil(library.load("ck15"), kind, rule, height, mean, pitch, degree)
     forces = []
     for part in PARTS:
         one.go_to(float(part * travel))
