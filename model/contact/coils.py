@@ -10,11 +10,10 @@ from numba import njit
 
 from coilset.meshes.boundary import Boundary
 from coilset.model.base.extremes import greatest, relative_motion
-from coilset.model.contact.base import Contact, Contribution, TrialPositions
+from coilset.model.contact.base import Contact, Contribution, Memory, TrialPositions
 from coilset.model.contact.curve import Curve, WirePoints, curve_weights
 from coilset.model.contact.elements import PAIR, Bedding, Pressed, coil_elements
 from coilset.model.contact.gauge import extremes, gauge_table
-from coilset.model.contact.memory import Memory
 from coilset.model.contact.search import (
     PLACES,
     KnownPart,

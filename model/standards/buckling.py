@@ -5,7 +5,7 @@ from math import inf, pi, sqrt
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
-from coilset.model.standards.torsion import WireNumbers
+from coilset.model.standards.rate import WireNumbers
 from coilset.model.standards.wires.steel import STEEL
 
 SEATING = 0.5  # EN 13906-1: seating coefficient ν of ends guided by parallel seats

@@ -9,7 +9,7 @@ import numpy as np
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.standards import en13906
-from coilset.model.standards.torsion import WireNumbers
+from coilset.model.standards.rate import WireNumbers
 
 CylinderEnds = Literal["open", "closed", "closed and ground", "mixed"]
 SAME = 1e-9  # maximum relative change of coil and wire diameter along a cylinder, and of a constant pitch
