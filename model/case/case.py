@@ -18,6 +18,7 @@ from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
+from coilset.model.case.working import WorkingSpec
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
@@ -268,7 +269,10 @@ class Case(Strict):
             default_factory=list, description="travels, mm, at which the rate during the first compression is reported"
         ),
     ]
-
+    working: Annotated[
+        WorkingSpec | None,
+        Field(description="lengths or forces between which the finished spring works; left out: none are reported"),
+    ] = None
     force_line: Annotated[
         ForceLineSpec | None,
         Field(description="planes that the force line crosses, and a damper; left out: seats.csv has no such numbers"),

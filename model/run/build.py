@@ -37,7 +37,7 @@ from coilset.model.runtime.threads import Threads
 from coilset.model.section.outline import Outlined
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.wires.law import case_elastic, case_strength
+from coilset.model.standards.wires.law import case_allowed, case_elastic, case_strength
 
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
 AUGMENTED = 2.0  # times the maximum penetration: up to there contacts are augmented although the case does not say so
@@ -178,7 +178,11 @@ def build_setup(
         ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts
     )
     limits = Limits(
-        law.validity.plastic_work, case_strength(case, spring), PENETRATION * 2.0 * least_radius, case.steps_error
+        law.validity.plastic_work,
+        case_strength(case, spring),
+        PENETRATION * 2.0 * least_radius,
+        case.steps_error,
+        *case_allowed(case, spring),
     )
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
     elastic = case_elastic(case, law)

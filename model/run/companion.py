@@ -65,10 +65,17 @@ def estimated(analysis: "Analysis") -> Result:
         surface = watch.surface_error()
     except CoilsetError as error:
         log.info("mesh, section and contact: errors not estimated, the companion on half of the elements: %s", error)
-        return replace(result, errors=RunErrors(_of_steps(analysis.setup, result), NOT_KNOWN, NOT_KNOWN, NOT_KNOWN))
+        errors = RunErrors(_of_steps(analysis.setup, result), NOT_KNOWN, NOT_KNOWN, NOT_KNOWN)
+        return replace(without_errors(result), errors=errors)
     judged = _judged(analysis, companion, watch.seen, surface) if comm.rank == 0 else None
     steps, errors = comm.bcast(judged)
-    return replace(result, steps=steps, errors=errors)
+    working = result.working and result.working.with_errors(companion.result.working)
+    return replace(result, steps=steps, errors=errors, working=working)
+
+
+def without_errors(result: Result) -> Result:
+    """The result of a run without a companion: only the errors by its steps are known, of working states none."""
+    return replace(result, working=result.working and result.working.with_errors(None))
 
 
 def _together(comm: MPI.Comm, action: Callable[[], object]) -> None:

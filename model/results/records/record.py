@@ -3,7 +3,7 @@
 import math
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from coilset.model.results.records.frame import Frame
 from coilset.model.rod.elements import Element
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
+
+if TYPE_CHECKING:  # its records hold those of here
+    from coilset.model.results.records.working import Working
 
 
 @dataclass(frozen=True)
@@ -247,12 +250,16 @@ class Limits:
         penetration: usual maximum penetration, mm.
         accuracy: requested error due to the step size, over the maximum force and over the set; None: it is
             not estimated.
+        shear: shear stress allowed at block for a wire of a standard, MPa; None: no such wire is named.
+        shear_of: which stress it limits, `corrected stress` or `uncorrected stress`.
     """
 
     plastic_work: float
     strength: float | None
     penetration: float
     accuracy: float | None
+    shear: float | None = None
+    shear_of: str = ""
 
 
 @dataclass(frozen=True)
@@ -396,6 +403,7 @@ class Result:
         warnings: Warnings of moments that its other records do not show.
         mode: BucklingMode of a spring that is slender enough to buckle; else None.
         errors: RunErrors of a complete run; None where they are not estimated.
+        working: the finished spring at its working lengths; None without any, and until the run is complete.
     """
 
     steps: tuple[Step, ...] = ()
@@ -407,6 +415,7 @@ class Result:
     warnings: tuple[Warning, ...] = ()
     mode: BucklingMode | None = field(default=None, repr=False)
     errors: RunErrors | None = None
+    working: "Working | None" = field(default=None, repr=False)
 
     @property
     def greatest_force(self) -> float:
