@@ -31,7 +31,9 @@ CLOSED_OF_ONSET_FORCE = 4e-8
 
 
 class Memory:
-    """Named arrays that a contact carries from one equilibrium to the next: it writes the trial arrays and also reads those of the last equilibrium.
+    """Named arrays that a contact carries from one equilibrium to the next, its part of the state.
+
+    It writes the trial arrays and also reads those of the last equilibrium.
 
     Args:
         stations: name → station of each row of that array. The rank of the station knows the row after an evaluation;
