@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
 
 from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
@@ -85,7 +86,9 @@ class SpringSpec(Strict):
     @model_validator(mode="after")
     def _has_wire(self) -> Self:
         if self.wire_diameter is None and self.wire is None:
-            raise ValueError("wire_diameter is missing; give the diameter of round wire, or wire for another section")
+            hint = "wire diameter, mm; a number or a table over the turns"
+            problem = "this entry is required; give {hint}"
+            raise PydanticCustomError("missing_entry", problem, {"entry": "wire_diameter", "hint": hint})
         past = next((name for name in ("made_by", "peening") if getattr(self, name) is not None), None)
         if self.wire is not None and past:
             raise ValueError(f"{past} is for round wire; leave it out, or wire")
