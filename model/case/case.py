@@ -360,6 +360,20 @@ class Case(Strict):
                 raise ValueError(f"loading.{number} takes no time, but heat flows; give a target and seconds")
         return self
 
+    @model_validator(mode="after")
+    def _wire_belongs(self) -> Self:
+        if not isinstance(self.spring, SpringSpec) or self.spring.wire is None:
+            return self
+        if self.mesh.axis == "chords":
+            raise ValueError("spring.wire is turned to the coil, but chords are straight; give mesh.axis: curved")
+        if self.heat:
+            raise ValueError("heat flows in round wire only; leave heat out, or spring.wire")
+        if self.contact.coils == "gaps":
+            raise ValueError("gap elements are for round wire; give contact.coils: closest")
+        if self.contact.friction.coils:
+            raise ValueError("friction of coils on coils is for round wire; leave contact.friction.coils out")
+        return self
+
     @property
     def targets(self) -> list[Phase]:
         """The phases of `loading` that go to a travel, height or force."""
