@@ -1,4 +1,7 @@
-"""All cases of a sweep as one Parquet file, for pandas, polars and DuckDB, written as a stream."""
+"""All cases of a sweep as one Parquet file, for pandas, polars and DuckDB, written as a stream.
+
+It loads neither xarray nor matplotlib, which would take a third of the memory of a million cases.
+"""
 
 import json
 from collections.abc import Iterator
@@ -12,14 +15,14 @@ from coilset.model.results.files.folder import whole
 from coilset.model.results.records.summary_entries import NUMBERS
 from coilset.model.results.records.units import quantity
 from coilset.model.results.records.working import names_of
-from coilset.model.sweep.dataset import corrects, responses_of, words_of_warnings
 from coilset.model.sweep.journal import Records
+from coilset.model.sweep.keys import as_rod
 from coilset.model.sweep.plan import Plan
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-ROWS = 20_000  # of a row group, which is what memory holds at a time
+ROWS = 5_000  # of a row group, which is what memory holds at a time
 
 
 def write(path: str | Path, plan: Plan, records: Records) -> int | None:
@@ -96,3 +99,25 @@ def _schema(pa: Any, plan: Plan) -> "pa.Schema":
     attributes = {"title": f"sweep {plan.path.stem}", "versions": versions(), "design": plan.spec.design}
     attributes |= {"inputs": json.dumps(plan.names), "cases": str(len(plan))}
     return pa.schema(fields, metadata=attributes)
+
+
+def responses_of(plan: Plan, record: dict[str, Any]) -> dict[str, float]:
+    """Numbers of the summary of a case that is done, by their names in the data set."""
+    if record["status"] != "done":
+        return {}
+    prefix = "rod_" if corrects(plan, record) else ""
+    return {
+        f"{prefix}{name}" if prefix or name not in plan.names else f"{name}_found": np.nan if value is None else value
+        for name, value in record["summary"].items()
+        if value is None or (isinstance(value, (int, float)) and not isinstance(value, bool))
+    }
+
+
+def corrects(plan: Plan, record: dict[str, Any]) -> bool:
+    """Whether it is a rod's record of a sweep of uniform rods."""
+    return plan.spec.model == "uniform_rod" and as_rod(record["key"]) == record["key"]
+
+
+def words_of_warnings(record: dict[str, Any]) -> str:
+    """Names of a case's warnings."""
+    return ", ".join(warning["name"] for warning in record["summary"].get("warnings", ()))

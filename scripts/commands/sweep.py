@@ -15,7 +15,7 @@ from rich.table import Table
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.results.files.folder import clear, making, refuse_obstacles
-from coilset.model.sweep import multifidelity
+from coilset.model.sweep import parquet
 from coilset.model.sweep.engines.pool import Pool
 from coilset.model.sweep.engines.processes import Workers
 from coilset.model.sweep.journal import Journal, Records, journals, read_records
@@ -179,25 +179,26 @@ class Bar:
 
 def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     """Data set, figures and a summary in words; returns the number of failed cases."""
-    from coilset.model.sweep import dataset, parquet  # after the cases: xarray and matplotlib take half a second
-    from coilset.model.sweep.figures.figures import FILES, draw
-
     if options.shard.count > 1:
         console.say(f"journal in {out / options.shard.journal}; when all shards are done, --collect joins them")
         return sum(record["status"] == "failed" for record in read_records(out / options.shard.journal))
-    data = dataset.collect(plan, out)
-    clear(out, ("report.html", *FILES))  # of other cases
-    dataset.write(out / "sweep.nc", data)
+    clear(out, ("sweep.parquet", "report.html"))  # of other cases
     records = Records(out, (key for _row, key, _model in plan.tasks()))
-    clear(out, ("sweep.parquet",))
+    counts = records.counts
     if parquet.write(out / "sweep.parquet", plan, records) is None:
         console.warn("sweep.parquet is not written: the package pyarrow is not installed")
+    del records
+    from coilset.model.sweep import dataset, multifidelity  # after the cases: xarray and matplotlib take half a second
+    from coilset.model.sweep.figures.figures import FILES, draw
+
+    data = dataset.collect(plan, out)
+    clear(out, FILES)
+    dataset.write(out / "sweep.nc", data)
     if data.sizes["case"] < len(plan):
         console.say(f"sweep.nc and figures show {data.sizes['case']} of {len(plan)} cases; sweep.parquet has all")
     files, problems = draw(out, plan, data) if options.pictures else ([], [])
     for line in multifidelity.lines(plan, data, out / "sweep.parquet"):
         console.print(line)
-    counts = records.counts
     table = Table(show_header=True, box=None, padding=(0, 2))
     for column in ("", "minimum", "mean", "maximum"):
         table.add_column(column, justify="left" if not column else "right")
