@@ -130,11 +130,12 @@ def of_parquet(path: str | Path, name: str) -> ControlVariate:
         ValueError: no or too few rods have it.
         ImportError: the package pyarrow is not installed.
     """
+    import pyarrow.compute as pc
     import pyarrow.parquet as pq
 
     table = pq.read_table(path, columns=["case", "model", name], read_dictionary=["model"])
     case, value = table["case"].to_numpy(), table[name].to_numpy()
-    of_rods = table["model"].combine_chunks().dictionary_decode().to_numpy(zero_copy_only=False) == "rod"
+    of_rods = pc.equal(table["model"], "rod").to_numpy()
     uniform = np.full(int(case.max(initial=-1)) + 1, np.nan)
     uniform[case[~of_rods]] = value[~of_rods]
     rod, beside = value[of_rods], uniform[case[of_rods]]
