@@ -132,6 +132,12 @@ class ContactSpec(Strict):
         Unit("N/mm²"),
         Field(gt=0, description="contact stiffness: force per length and penetration, N/mm per mm; default E/40"),
     ] = None
+    arbor: Annotated[
+        float | None, Unit("mm"), Field(gt=0, description="diameter of a smooth arbor inside the coils, mm")
+    ] = None
+    sleeve: Annotated[
+        float | None, Unit("mm"), Field(gt=0, description="inner diameter of a smooth sleeve around the coils, mm")
+    ] = None
     penetration_limit: Annotated[
         float,
         Unit("wire diameters"),
@@ -336,6 +342,12 @@ class Case(Strict):
         return self
 
     @model_validator(mode="after")
+    def _tension_is_held(self) -> Self:
+        if "initial_tension" in self.past and self.ends == "seats":
+            raise ValueError("spring.initial_tension: seats only press, but an extension spring is pulled; give ends: clamped")
+        return self
+
+    @model_validator(mode="after")
     def _heat_takes_time(self) -> Self:
         if self.heat and self.mesh.section.kind == "warping":
             raise ValueError("heat needs sections of fibres; give mesh.section.kind: curved or plane")
@@ -369,7 +381,8 @@ class Case(Strict):
         """Entries of `spring` on the wire's manufacture; without them the wire is free of stress."""
         if not isinstance(self.spring, SpringSpec):
             return []
-        return [name for name in ("made_by", "peening") if getattr(self.spring, name) is not None]
+        names = "made_by", "peening", "initial_tension"
+        return [name for name in names if getattr(self.spring, name) is not None]
 
 
 Group = TypeVar("Group", bound=Strict)
