@@ -198,6 +198,7 @@ def build_setup(
         warnings=warnings,
         coiling_diameter=coiling_diameter,
         force_line=build_force_line(case),
+        wound_solid="initial_tension" in case.past,
     )
 
 

@@ -94,6 +94,19 @@ class Lines:
         """Print the results."""
         table = Table(show_header=False, box=None, padding=(0, 2))
         of_set = summary["estimated_set_error_mm"]
+        if summary["turn_max_deg"] is not None:
+            table.add_row("[bold]set[/]", f"[bold]{quantity(summary['turn_set_deg'], '°', 2)}[/]")
+            table.add_row("largest rotation", quantity(summary["turn_max_deg"], "°", 2))
+            table.add_row("maximum torque", quantity(summary["torque_max_Nmm"], "N mm", 1))
+            table.add_row("rate", quantity(summary["turn_rate_Nmm_per_deg"], "N mm/°"))
+            for side in ("inside", "outside"):
+                stress = quantity(summary[f"residual_bending_{side}_MPa"], "MPa", 2)
+                table.add_row(f"residual bending stress, {side} of coil", stress)
+            table.add_row("smallest inner diameter", quantity(summary["inner_diameter_min_mm"], "mm", 2))
+        if summary["initial_tension_N"] is not None:
+            table.add_row("initial tension before", quantity(summary["initial_tension_N"], "N", 2))
+            table.add_row("initial tension after", quantity(summary["initial_tension_after_N"], "N", 2))
+            table.add_row("rate, coils open", quantity(summary["open_rate_N_per_mm"], "N/mm"))
         table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
         for number, release in enumerate(summary["releases"][:-1], 1):
             table.add_row(f"free length after release {number}", quantity(release["free_length_mm"], "mm"))

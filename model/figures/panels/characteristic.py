@@ -18,7 +18,9 @@ AGAIN = "For the second loading, add a phase to the load program, such as “- t
 
 
 def characteristic(run: Run) -> Panel:
-    """Force over travel, one line per phase, with the initial rate, block and set."""
+    """Force over travel, one line per phase, with the initial rate, block and set; torque over rotation in torsion."""
+    if run.summary.get("turn_max_deg") is not None:
+        return torque_curve(run)
     summary, found = run.summary, phases(run, NAMED)
     traces = []
     for phase, travel, force in _curves(run, found):
@@ -50,9 +52,34 @@ def characteristic(run: Run) -> Panel:
     )
 
 
-def _curves(run: Run, found: list[Phase]) -> Iterator[tuple[Phase, np.ndarray, np.ndarray]]:
-    """Travel (mm) and force (N) of each phase, from the end of the one before on."""
-    travel, force = (np.append(0.0, run.data[name].values) for name in ("travel_mm", "force_N"))
+def torque_curve(run: Run) -> Panel:
+    """Torque over the rotation of the top head against the bottom one, one line per phase, with rate and set."""
+    summary, found, traces = run.summary, phases(run, NAMED), []
+    for phase, turn, torque in _curves(run, found, ("turn_deg", "torque_Nmm")):
+        colour = phase.number if phase.number < NAMED else GREY
+        traces.append(curve(turn, torque, colour, marker=5, name=phase.label, showlegend=phase.named))
+    traces += unnamed(found, NAMED)
+    greatest, rate, most = (summary[name] for name in ("torque_max_Nmm", "turn_rate_Nmm_per_deg", "turn_max_deg"))
+    x = np.array([0.0, np.copysign(min(abs(greatest / rate), abs(most)), most)])
+    traces.append(curve(x, rate * x, GREY, dash="dot", width=1.2, name=f"rate {rate:.4g} N mm/°"))
+    set_deg = summary["turn_set_deg"]
+    left = "" if set_deg is None else f", the spring sets {plain(set_deg)}°".replace("-", "−")
+    finding = f"Turned by {plain(most)}° with up to {plain(abs(greatest))} N mm{left}".replace("-", "−")
+    return Panel(
+        "characteristic",
+        finding,
+        f"Torque over rotation. {finding}.",
+        traces,
+        {"xaxis": axis("rotation, °"), "yaxis": axis("torque, N mm")},
+        height=HEIGHT,
+    )
+
+
+def _curves(
+    run: Run, found: list[Phase], names: tuple[str, str] = ("travel_mm", "force_N")
+) -> Iterator[tuple[Phase, np.ndarray, np.ndarray]]:
+    """Travel (mm) and force (N), or other columns, of each phase, from the end of the one before on."""
+    travel, force = (np.append(0.0, run.data[name].values) for name in names)
     for phase in found:
         steps = np.append(phase.steps[0], phase.steps + 1)
         yield phase, travel[steps], force[steps]
@@ -100,7 +127,9 @@ def _arrow(set_mm: float) -> list[dict[str, Any]]:
 
 
 def rate_curve(run: Run) -> Panel | None:
-    """Slope of the characteristic over travel, phase by phase; None if no phase has three steps."""
+    """Slope of the characteristic over travel, phase by phase; None if no phase has three steps, and in torsion."""
+    if run.summary.get("turn_max_deg") is not None:
+        return None
     traces, found = [], phases(run, NAMED)
     for phase, travel, force in _curves(run, found):
         apart = np.append(True, np.abs(np.diff(travel)) > 1e-9 * np.ptp(travel))
