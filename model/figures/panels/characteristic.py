@@ -31,7 +31,12 @@ def characteristic(run: Run) -> Panel:
         traces.append(steps | {"mode": "markers", "marker": {"size": 5, "color": steps["line"]["color"]}})
     traces += unnamed(found, NAMED)
     greatest, rate, set_mm = summary["force_max_N"], summary["rate_N_per_mm"], summary["set_mm"]
-    if rate:
+    opened, held = (summary.get(name) for name in ("open_rate_N_per_mm", "initial_tension_N"))
+    if opened:  # the initial rate is that of coils that touch
+        x = np.array([float(np.nanmin(run.data["travel_mm"].values)), 0.0])
+        name = f"{held:.4g} N + {opened:.4g} N/mm · extension"
+        traces.append(curve(x, opened * x - held, GREY, dash="dot", width=1.2, name=name))
+    elif rate:
         travels = np.abs(run.data["travel_mm"].values)
         end = min(abs(greatest) / rate, float(np.nanmax(travels, initial=0.0)) or 1.0)
         x, name = np.array([0.0, np.copysign(end, greatest)]), f"initial rate {rate:.4g} N/mm"
@@ -39,12 +44,14 @@ def characteristic(run: Run) -> Panel:
     block = summary["free_length_before_mm"] - summary["block_height_mm"]
     finding = f"{compressed(greatest)} with up to {plain(abs(greatest))} N{_outcome(summary)}"
     layout = upright(block, f"block, {summary['block_height_mm']:.4g} mm high")
+    if greatest < 0.0:
+        layout = {"annotations": []}
     if set_mm:
         layout["annotations"] += _arrow(set_mm)
     return Panel(
         "characteristic",
         finding,
-        f"Axial force over travel. {finding}. Block is at {block:.4g} mm of travel.",
+        f"Axial force over travel. {finding}.{'' if greatest < 0.0 else f' Block is at {block:.4g} mm of travel.'}",
         traces,
         {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), **layout},
         height=HEIGHT,

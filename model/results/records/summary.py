@@ -11,7 +11,7 @@ import numpy as np
 from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates, tension, turning
 from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
-from coilset.model.results.records.releases import Release, releases
+from coilset.model.results.records.releases import Release, is_turned, releases
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section import surface
@@ -62,7 +62,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         **turning(setup, result, release),
         **tension(setup, result, release),
         **plastic_work(setup, result),
-        **estimated_errors(result),
+        **estimated_errors(setup, result),
         load_loss_percent=load_loss(result),
         coiling_diameter_mm=setup.coiling_diameter,
         measured_axis_offset_mm=axis.offset if axis else None,
@@ -101,9 +101,12 @@ def _release(release: Release) -> dict[str, Any]:
     }
 
 
-def estimated_errors(result: Result) -> dict[str, Any]:
-    """Errors of maximum force, set and residual shear: in total, and by their causes; None where not estimated."""
-    errors = result.errors
+def estimated_errors(setup: Setup, result: Result) -> dict[str, Any]:
+    """Errors of maximum force, set and residual shear: in total, and by their causes; None where not estimated.
+
+    Nor are they in torsion, where axial force and loss of length are close to zero.
+    """
+    errors = None if is_turned(setup, result.steps) else result.errors
     total = Errors(None, None, None) if errors is None else errors.total
     return {
         "estimated_force_error_N": total.force_N,
