@@ -24,14 +24,12 @@ class Fault:
 
 
 def faults(spring: "Spring", wound_solid: bool = False) -> Iterator[Fault]:
-    """The reasons why a spring is impossible, one after the other; `wound_solid`: its coils may touch from the start."""
+    """The reasons why a spring is impossible, one after the other; `wound_solid`: coils may touch from the start."""
     for check in (_index, _coils, *(() if wound_solid else (_block,))):
         yield from check(spring)
 
 
-def refuse(
-    spring: "Spring", place: str | None = None, file: str = "", wound_solid: bool = False
-) -> "Spring":
+def refuse(spring: "Spring", place: str | None = None, file: str = "", wound_solid: bool = False) -> "Spring":
     """Raise `InputError` for the first fault; return the spring if there is none.
 
     Args:

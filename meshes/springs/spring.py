@@ -96,7 +96,7 @@ class SpringSpec(Strict):
     @model_validator(mode="after")
     def _has_length(self) -> Self:
         if self.initial_tension is not None:
-            if self.pitch is not None or self.free_length is not None or OPEN != self.end_coils:
+            if self.pitch is not None or self.free_length is not None or self.end_coils != OPEN:
                 raise ValueError(
                     "coils with initial_tension are wound onto each other; leave pitch, free_length and end_coils out"
                 )

@@ -344,7 +344,9 @@ class Case(Strict):
     @model_validator(mode="after")
     def _tension_is_held(self) -> Self:
         if "initial_tension" in self.past and self.ends == "seats":
-            raise ValueError("spring.initial_tension: seats only press, but an extension spring is pulled; give ends: clamped")
+            raise ValueError(
+                "spring.initial_tension: seats only press, but an extension spring is pulled; give ends: clamped"
+            )
         return self
 
     @model_validator(mode="after")

@@ -1,4 +1,4 @@
-"""Lateral support: of the end coil by a seat's groove, of the coils by an arbor or a sleeve; and support of the seat."""
+"""Lateral support: of the end coil by a seat's groove, of the coils by arbor or sleeve; and support of the seat."""
 
 import numpy as np
 from numpy.typing import ArrayLike

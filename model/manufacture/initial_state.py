@@ -32,7 +32,7 @@ START = "point_state", "surface_state"
 
 @dataclass(frozen=True)
 class _Past:
-    """What all sections of a rod went through: the law without time, that of the relief's intervals, the layer, F0 in N."""
+    """What all sections of a rod went through: the law without time, that of the relief, the layer, F0 in N."""
 
     law: SectionLaw
     coiled: bool

@@ -82,7 +82,8 @@ def _tension(s: Mapping[str, Any]) -> list[Number]:
     after = s["initial_tension_after_N"]
     left = "" if after is None else f"{with_unit(after, 'N', 1)} after the last release"
     rate = with_unit(s["open_rate_N_per_mm"], "N/mm", 3)
-    return [Number("initial tension", with_unit(s["initial_tension_N"], "N", 1), left), Number("rate, coils open", rate)]
+    held = Number("initial tension", with_unit(s["initial_tension_N"], "N", 1), left)
+    return [held, Number("rate, coils open", rate)]
 
 
 def _turned(s: Mapping[str, Any]) -> list[Number]:

@@ -151,7 +151,7 @@ def bending_stress(torque: float, d: float) -> float:
 def bending_correction(w: float) -> float:
     """Stress factor q at the inside of a curved wire in bending, (4 w² − w − 1)/(4 w (w − 1)) (Wahl).
 
-    By Winkler's curved beam of circular section; part 3 of the standard has a fit for q, which no open source confirmed.
+    By Winkler's curved beam of circular section; the fit for q in part 3 of the standard was found in no open source.
     """
     return (4.0 * w**2 - w - 1.0) / (4.0 * w * (w - 1.0))
 

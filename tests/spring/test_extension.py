@@ -42,7 +42,7 @@ def test_force_and_travel_of_an_elastic_spring(hand):
     assert (force[4] - force[3]) / (travel[4] - travel[3]) == pytest.approx(R, rel=0.01)
     assert [step.contacts > 0 for step in steps[:5]] == [True, True, False, False, False]
     assert summary["initial_tension_after_N"] == pytest.approx(TENSION, rel=0.01)
-    assert abs(summary["set_mm"]) < 1e-6
+    assert abs(summary["set_mm"]) < 0.01 * WIRE  # by which coils under F0 sink into each other from the drawing
 
 
 def test_the_set_is_that_of_a_wire_in_torsion(ck15):

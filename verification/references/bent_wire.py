@@ -15,7 +15,7 @@ SLICES = 2000  # of the section's half height
 
 def tensile_curve(law: Law) -> tuple[np.ndarray, np.ndarray]:
     """Strain and stress, MPa, of a point in tension up to REACH."""
-    step = {"to": {"epsilon11": REACH}, "increments": INCREMENTS}
+    step = {"to": {"eps11": REACH}, "increments": INCREMENTS}
     history = programs.run(law, programs.Program.model_validate({"name": "tension", "steps": [step]}))
     return history.strain[:, 0], history.stress[:, 0]
 
