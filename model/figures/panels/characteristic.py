@@ -117,6 +117,9 @@ def compressed(force: float) -> str:
 def _outcome(summary: Mapping[str, Any]) -> str:
     """The set, or the load that was lost; empty if the spring was not released."""
     set_mm, lost = summary["set_mm"], summary.get("load_loss_percent")
+    before, after = (summary.get(name) for name in ("initial_tension_N", "initial_tension_after_N"))
+    if before and after:
+        return f", the initial tension falls from {plain(before)} to {plain(after)} N"
     if set_mm is None:
         return "" if lost is None else f", the spring loses {plain(lost)} % of its load"
     text = plain(set_mm)

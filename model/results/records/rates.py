@@ -96,7 +96,7 @@ def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, An
     }
 
 
-def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, float | None]:
+def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
     """Entries of the summary of a spring that is loaded by a torque about its axis; None of any other.
 
     Args:
@@ -125,7 +125,7 @@ def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, 
     return dict(zip(names, values, strict=True))
 
 
-def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, float | None]:
+def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
     """Entries of the summary of a spring whose coils are wound onto each other: F0 before and after, N, and rate.
 
     The line of an open spring, F = F0 + R s, by the first two steps without contact, and by the last two of the last

@@ -161,12 +161,12 @@ def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
     return float(middle[at]), float(setup.section_turns[among][at])
 
 
-def bending(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, float | None]:
+def bending(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
     """Stress along the wire on the surface at the inside and the outside of the coil, MPa, positive in tension.
 
     Of each the value of largest magnitude in the middle turns and the snapshots; None without snapshots.
     """
-    found: dict[str, float | None] = {}
+    found: dict[str, Any] = {}
     for name, angle in (("inside", 0.0), ("outside", math.pi)):
         values = []
         for shot in snapshots:
