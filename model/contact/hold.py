@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from coilset.model.contact.base import Contact, Contribution, TrialPositions, one_sided
+from coilset.model.contact.base import Contact, Contribution, Memory, TrialPositions, one_sided
 from coilset.model.contact.curve import STENCIL, WirePoints
-from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
 
