@@ -21,6 +21,7 @@ from coilset.meshes.springs.wire import WireSpec
 from coilset.model.base.errors import InputError
 from coilset.model.base.schema import Strict
 
+PAST = "made_by", "peening", "initial_tension"  # entries that leave stress in the wire before its first load
 DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wire diameters to add for the mean one
 
 __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
@@ -98,7 +99,7 @@ class SpringSpec(Strict):
             hint = "wire diameter, mm; a number or a table over the turns"
             problem = "this entry is required; give {hint}"
             raise PydanticCustomError("missing_entry", problem, {"entry": "wire_diameter", "hint": hint})
-        past = next((name for name in ("made_by", "peening") if getattr(self, name) is not None), None)
+        past = next((name for name in PAST if getattr(self, name) is not None), None)
         if self.wire is not None and past:
             raise ValueError(f"{past} is for round wire; leave it out, or wire")
         return self

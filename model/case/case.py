@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from coilset.meshes.springs.spring import SpringEntry, SpringSpec
+from coilset.meshes.springs.spring import PAST, SpringEntry, SpringSpec
 from coilset.meshes.springs.stations import ElementsPerTurn
 from coilset.model.base.entry import Strict, Whole, check_entries
 from coilset.model.base.yaml import read_data
@@ -382,6 +382,8 @@ class Case(Strict):
             raise ValueError("spring.wire is turned to the coil, but chords are straight; give mesh.axis: curved")
         if self.heat:
             raise ValueError("heat flows in round wire only; leave heat out, or spring.wire")
+        if self.contact.arbor or self.contact.sleeve:
+            raise ValueError("an arbor or sleeve is for round wire; leave it out, or spring.wire")
         if self.contact.coils == "gaps":
             raise ValueError("gap elements are for round wire; give contact.coils: closest")
         if self.contact.friction.coils:
@@ -413,8 +415,7 @@ class Case(Strict):
         """Entries of `spring` on the wire's manufacture; without them the wire is free of stress."""
         if not isinstance(self.spring, SpringSpec):
             return []
-        names = "made_by", "peening", "initial_tension"
-        return [name for name in names if getattr(self.spring, name) is not None]
+        return [name for name in PAST if getattr(self.spring, name) is not None]
 
 
 Group = TypeVar("Group", bound=Strict)

@@ -114,6 +114,9 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
         yield Row("initial tension F0", sheet.tension, "N", "", GIVEN, found, why)
         τ0 = en13906.stress(sheet.tension, s.d, s.D)
         yield Row("  stress τ0", τ0, "MPa", "8 D F0/(π d³)", DERIVED)
+    if s.wire:
+        yield Row("all others", None, why="EN 13906-2 is for round wire")
+        return
     formula = "F0 + R (L − L0)" if sheet.tension else "R (L − L0)"
     for length in sheet.lengths:
         force = sheet.tension + sheet.rate * (length - s.length)
@@ -127,6 +130,9 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
 
 def _turned(sheet: Sheet) -> Iterator[Row]:
     """Of a spring that the load program turns, EN 13906-3."""
+    if sheet.spring.wire:
+        yield Row("all", None, why="EN 13906-3 is for round wire")
+        return
     s, run = sheet.spring, sheet.at_run
     rate, q = en13906.turn_rate(sheet.elastic.young_modulus, s.d, s.D, s.n), en13906.bending_correction(s.index)
     why = "with the wire's pitch and curvature"
