@@ -27,7 +27,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import xarray as xr
@@ -56,6 +56,9 @@ from coilset.model.runtime.processes import usable_cores
 from coilset.model.runtime.threads import usual
 from coilset.model.sweep.study import Study as _Study
 
+if TYPE_CHECKING:
+    from coilset.model.vibration.modes import Modes
+
 __all__ = [
     "Case",
     "CoilsetError",
@@ -68,6 +71,7 @@ __all__ = [
     "Study",
     "design",
     "material",
+    "modes",
     "slice_",
     "solve",
     "sweep",
@@ -347,6 +351,32 @@ def slice_(case: Case, section: str | None = None) -> Result:
         write_summary(folder, {**summarise_slice(analysis), "origin": origin(case._case)})
 
     return _temporary(write)
+
+
+def modes(run: Case | str | Path, at: str = "end", count: int = 10, glued: bool = False) -> "Modes":
+    """Natural frequencies and modes of a spring after its load program, or at another load from there on; collective.
+
+    Args:
+        run: a Case, whose load program is run, or a results folder of `coilset solve` with its checkpoint.
+        at: `end`, or where the spring goes from there: `block`, `block-3mm`, `height=30`, `travel=5`, `force=100`.
+        count: of modes.
+        glued: whether coils that touch cannot slide on each other.
+
+    Returns:
+        Modes, with `frequencies`, Hz, `shapes`, `masses` and `eigenvalues` ω².
+
+    Raises:
+        InputError: there is no such run, or the state has no meaning.
+        SolveError: no equilibrium was found, or too few modes.
+
+    >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}, steps: 2}]", "accuracy=none"])
+    >>> print(f"{modes(case, count=1).frequencies[0]:.0f} Hz")
+    427 Hz
+    """
+    from coilset.model.vibration.loaded import after_results, after_run, loaded_modes
+
+    analysis = after_run(run._case, at) if isinstance(run, Case) else after_results(run, at)
+    return loaded_modes(analysis, count, glued)
 
 
 def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwrite: bool = False) -> xr.Dataset:

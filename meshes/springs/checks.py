@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coilset.meshes.springs.ends import touching_pitch
 from coilset.model.base.errors import InputError
 
 if TYPE_CHECKING:
@@ -47,19 +48,24 @@ def coil_distances(spring: "Spring") -> tuple[np.ndarray, np.ndarray, np.ndarray
 
     Returns:
         Turns t, the distances between the turns t and t + 1, and the sums of the wire's radii there, mm; each of shape
-        (n,), empty if the spring has less than one turn.
+        (n,), empty if the spring has less than one turn. Of wire that is not round, the distances along the axis, which
+        are infinite where coils pass each other, and those at which the coils touch.
     """
     low = spring.breaks[spring.breaks <= spring.turns - 1]
     if spring.turns > 1:
         low = np.append(low, spring.turns - 1)
     up = low + 1
-    distance = np.hypot(spring.mean_radius(up) - spring.mean_radius(low), spring.height(up) - spring.height(low))
-    return low, distance, 0.5 * (spring.wire_diameter(up) + spring.wire_diameter(low))
+    aside, rise = spring.mean_radius(up) - spring.mean_radius(low), spring.height(up) - spring.height(low)
+    wire = 0.5 * (spring.wire_diameter(up) + spring.wire_diameter(low))
+    if spring.section is None:
+        return low, np.hypot(aside, rise), wire
+    touching = touching_pitch(wire, aside, spring.section)
+    return low, np.where(touching > 0.0, rise, np.inf), np.where(touching > 0.0, touching, wire)
 
 
 def _index(spring: "Spring") -> Iterator[Fault]:
     t = spring.breaks
-    index = 2 * spring.mean_radius(t) / spring.wire_diameter(t)
+    index = 2 * spring.mean_radius(t) / (spring.wire_diameter(t) * max(1.0, spring.width))
     i = np.argmin(index)
     if index[i] < INDEX_LEAST:
         yield Fault(

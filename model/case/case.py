@@ -13,11 +13,13 @@ from coilset.meshes.springs.spring import SpringEntry, SpringSpec
 from coilset.meshes.springs.stations import ElementsPerTurn
 from coilset.model.base.entry import Strict, Whole, check_entries
 from coilset.model.base.yaml import read_data
+from coilset.model.case.endurance import EnduranceSpec
 from coilset.model.case.heads import FREEDOMS, ForceLineSpec, HeadsSpec
 from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
+from coilset.model.case.working import WorkingSpec
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
@@ -268,7 +270,14 @@ class Case(Strict):
             default_factory=list, description="travels, mm, at which the rate during the first compression is reported"
         ),
     ]
-
+    working: Annotated[
+        WorkingSpec | None,
+        Field(description="lengths or forces between which the finished spring works; left out: none are reported"),
+    ] = None
+    endurance: Annotated[
+        EnduranceSpec | None,
+        Field(description="fatigue strength of the wire, for its life between the outermost working states"),
+    ] = None
     force_line: Annotated[
         ForceLineSpec | None,
         Field(description="planes that the force line crosses, and a damper; left out: seats.csv has no such numbers"),
@@ -326,6 +335,13 @@ class Case(Strict):
         return self
 
     @model_validator(mode="after")
+    def _endurance_of_cycles(self) -> Self:
+        states = len(self.working.targets) if self.working else 0
+        if self.endurance is not None and states < 2:
+            raise ValueError("endurance is for the cycle between two working states; give working: {lengths: [47, 37]}")
+        return self
+
+    @model_validator(mode="after")
     def _past_of_fibres(self) -> Self:
         if self.past and self.mesh.section.kind == "warping":
             raise ValueError(f"spring.{self.past[0]} needs sections of fibres; give mesh.section.kind: curved or plane")
@@ -342,6 +358,20 @@ class Case(Strict):
         for number, phase in enumerate(self.loading):
             if self.heat and isinstance(phase, Phase) and phase.seconds is None:
                 raise ValueError(f"loading.{number} takes no time, but heat flows; give a target and seconds")
+        return self
+
+    @model_validator(mode="after")
+    def _wire_belongs(self) -> Self:
+        if not isinstance(self.spring, SpringSpec) or self.spring.wire is None:
+            return self
+        if self.mesh.axis == "chords":
+            raise ValueError("spring.wire is turned to the coil, but chords are straight; give mesh.axis: curved")
+        if self.heat:
+            raise ValueError("heat flows in round wire only; leave heat out, or spring.wire")
+        if self.contact.coils == "gaps":
+            raise ValueError("gap elements are for round wire; give contact.coils: closest")
+        if self.contact.friction.coils:
+            raise ValueError("friction of coils on coils is for round wire; leave contact.friction.coils out")
         return self
 
     @property

@@ -55,7 +55,7 @@ def build_contacts(
     points = CentreLine(turns, radius, lengths).points()
     contacts: list[Contact] = []
     if contact.coils == "closest":
-        contacts.append(Coils(points, stations, bedding, onset))
+        contacts.append(Coils(points, stations, bedding, onset, spring.section))
     else:
         contacts.append(gaps_one_turn_apart(turns, radius, lengths, bedding, onset))
     if seats is not None:

@@ -98,3 +98,42 @@ def _errors(summary: Mapping[str, Any]) -> str:
 def _after(summary: Mapping[str, Any]) -> str:
     rate = summary["rate_30_70_after_N_per_mm"]
     return "" if rate is None else f"{rate:.3f} N/mm on release, between 30 and 70 % of the travel"
+
+
+WORKING_HEADS = (
+    "length, mm",
+    "force, N",
+    "rate, N/mm",
+    "τ, MPa",
+    "τk, MPa",
+    "true, inside, MPa",
+    "at turn",
+    "safety",
+    "force centre, x and y, mm",
+)
+"""Columns of `working_rows`."""
+
+
+def working_rows(summary: Mapping[str, Any]) -> list[list[str]]:
+    """The finished spring at its working states, of summary.json, a row of texts each; none of earlier versions."""
+    return [_working(state) for state in summary.get("working") or ()]
+
+
+def _working(state: Mapping[str, Any]) -> list[str]:
+    if state["reason"]:
+        wanted = [f"{state[name]:g}" if name in state else "–" for name in ("length_wanted", "force_wanted")]
+        return [*wanted, state["reason"], *[""] * (len(WORKING_HEADS) - 3)]
+    is_length, error = "length_wanted" in state, state["estimated_error"]
+    x, y = (state[f"bottom_centre_{axis}_mm"] for axis in "xy")
+    cells = [
+        within(state["length_mm"], None if is_length else error, "", 3),
+        within(state["force_N"], error if is_length else None, "", 2),
+        with_unit(state["rate_N_per_mm"], "", 3, "–"),
+        with_unit(state["shear_MPa"], "", 0, "–"),
+        with_unit(state["corrected_shear_MPa"], "", 0, "–"),
+        with_unit(state["shear_inside_MPa"], "", 0, "–"),
+        with_unit(state["shear_inside_turn"], "", 2, "–"),
+        with_unit(state["safety"], "", 2, "–"),
+        "–" if x is None else f"{x:.2f}, {y:.2f}",
+    ]
+    return [cell.strip().replace("-", "−") for cell in cells]

@@ -47,6 +47,7 @@ log = logging.getLogger("coilset.steps")
 
 FOLLOWED = 8  # elements whose sections are followed with the finer rule
 RINGS, ANGLES = 12, 48  # of the finer rule at least
+FINER_OUTLINE = 3  # times the points, of a section that is no disk
 STILL = 1e-9  # of the free length: a step of less travel is one of force or time
 # Error by the mesh over the difference to the companion. Forces: 1/3 by the second order, times 1.25 (Roache 1994). In
 # twelve springs with 8, 16 and 64 elements per turn the error at 16 was 0.00 to 0.45 of the difference of the forces,
@@ -69,10 +70,17 @@ def estimated(analysis: "Analysis") -> Result:
         surface = watch.surface_error()
     except CoilsetError as error:
         log.info("mesh, section and contact: errors not estimated, the companion on half of the elements: %s", error)
-        return replace(result, errors=RunErrors(_of_steps(analysis.setup, result), NOT_KNOWN, NOT_KNOWN, NOT_KNOWN))
+        errors = RunErrors(_of_steps(analysis.setup, result), NOT_KNOWN, NOT_KNOWN, NOT_KNOWN)
+        return replace(without_errors(result), errors=errors)
     judged = _judged(analysis, companion, watch.seen, surface) if comm.rank == 0 else None
     steps, errors = comm.bcast(judged)
-    return replace(result, steps=steps, errors=errors)
+    working = result.working and result.working.with_errors(companion.result.working)
+    return replace(result, steps=steps, errors=errors, working=working)
+
+
+def without_errors(result: Result) -> Result:
+    """The result of a run without a companion: only the errors by its steps are known, of working states none."""
+    return replace(result, working=result.working and result.working.with_errors(None))
 
 
 def _together(comm: MPI.Comm, action: Callable[[], object]) -> None:
@@ -137,6 +145,8 @@ class _Watch:
         self.stride = max(1, math.ceil(rod.mesh.topology.index_map(1).size_global / FOLLOWED))
         self.cells = np.flatnonzero(along % self.stride == self.stride // 2)
         finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
+        if rule.outline is not None:
+            finer = rule.outline.rule(FINER_OUTLINE * len(rule))
         self.sections = make_sections(
             section.kind,
             rod.law,

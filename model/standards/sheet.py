@@ -52,7 +52,7 @@ class Sheet:
     @property
     def rate(self) -> float:
         """R, N/mm."""
-        return en13906.rate(self.elastic.shear_modulus, self.spring.d, self.spring.D, self.spring.n)
+        return en13906.rate(self.elastic.shear_modulus, self.spring.of_rate, self.spring.D, self.spring.n)
 
     def force(self, length: float) -> float:
         """Nominal force at a length, N: R (L0 − L), or that of coils of variable pitch, which close one by one."""
@@ -68,7 +68,7 @@ class Sheet:
 
     def stress(self, length: float) -> float:
         """Nominal uncorrected shear stress at a length, MPa."""
-        return en13906.stress(self.force(length), self.spring.d, self.spring.D)
+        return en13906.stress(self.force(length), self.spring.of_stress, self.spring.D)
 
     @property
     def block(self) -> float | None:
@@ -91,7 +91,7 @@ class Sheet:
         """Corrected stresses at the longest and the shortest working length; None with fewer than two."""
         if len(self.lengths) < 2:
             return None
-        k = en13906.stress_correction(self.spring.index)
+        k = self.spring.correction
         return goodman.Cycle(k * self.stress(max(self.lengths)), k * self.stress(min(self.lengths)))
 
     @property

@@ -11,6 +11,7 @@ from coilset.model.base.version import versions
 from coilset.model.results.files.folder import whole
 from coilset.model.results.records.summary_entries import NUMBERS
 from coilset.model.results.records.units import quantity
+from coilset.model.results.records.working import names_of
 from coilset.model.sweep.dataset import corrects, responses_of, words_of_warnings
 from coilset.model.sweep.journal import Records
 from coilset.model.sweep.plan import Plan
@@ -87,7 +88,7 @@ def _schema(pa: Any, plan: Plan) -> "pa.Schema":
         fields.append(pa.field(name, pa.float64() if number else pa.string()))
     fields += [pa.field(name, pa.string()) for name in ("key", "status", "reason", "warnings")]
     fields.append(pa.field("seconds", pa.float64(), metadata={"units": "s"}))
-    for name in NUMBERS:
+    for name in (*NUMBERS, *names_of(plan.base.get("working") or {})):
         column = f"{name}_found" if name in plan.names else name
         words, unit = quantity(name)
         fields.append(pa.field(column, pa.float64(), metadata={"units": unit, "long_name": words}))

@@ -125,6 +125,10 @@ class Lines:
         if largest := largest_errors(summary["estimated_errors"]):
             table.add_row("largest part of the errors ±", largest)
         self.console.print(table)
+        if summary["working"]:
+            self.console.print(working_table(summary["working"]))
+        if summary["fatigue"]:
+            self.console.print(fatigue_table(summary["fatigue"]))
         self.console.say(f"  results in {out}{os.sep}", whole=True)
         for warning in summary["warnings"]:
             self.warn(warning["message"])
@@ -219,6 +223,47 @@ def quantity(value: float | None, unit: str, digits: int = 4) -> str:
 def without_minus(value: float, digits: int) -> str:
     """A value with a number of decimals, without -0.0."""
     return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
+    """The working states of summary.json, a row each; rate in N/mm, stresses in MPa, the true one at the inside."""
+    table = Table(show_header=True, box=None, padding=(0, 1))
+    for head in ("length, mm", "force, N", "rate", "τ", "τk", "true", "turn", "safety"):
+        table.add_column(head, justify="right", no_wrap=True)
+    for state in states:
+        if state["reason"]:
+            wanted = state.get("length_wanted", state.get("force_wanted"))
+            place = (f"{wanted:g}", "-") if "length_wanted" in state else ("-", f"{wanted:g}")
+            table.add_row(*place)
+            continue
+        is_length = "length_wanted" in state
+        error = state["estimated_error"]
+        force = within(state["force_N"], error if is_length else None, "", 2).strip()
+        length = within(state["length_mm"], None if is_length else error, "", 3).strip()
+        numbers = [state[name] for name in ("shear_MPa", "corrected_shear_MPa", "shear_inside_MPa")]
+        table.add_row(
+            length,
+            force,
+            quantity(state["rate_N_per_mm"], "", 3).strip(),
+            *("-" if number is None else f"{number:.0f}" for number in numbers),
+            f"{state['shear_inside_turn']:.2f}",
+            "-" if state["safety"] is None else f"{state['safety']:.2f}",
+        )
+    return table
+
+
+def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:
+    """Fatigue by each criterion, of summary.json, a row each; stresses in MPa."""
+    table = Table(show_header=True, box=None, padding=(0, 1))
+    for head in ("fatigue by", "amplitude", "endured", "safety", "turn", "angle", "lives"):
+        table.add_column(head, justify="right", no_wrap=True)
+    for one in entries:
+        numbers = (f"{one[name]:.0f}" for name in ("amplitude_MPa", "endured_MPa"))
+        lives = "-" if one["lives"] is None else ", ".join(f"{life:.2g}" for life in one["lives"].values())
+        table.add_row(
+            one["criterion"], *numbers, f"{one['safety']:.2f}", f"{one['turn']:.2f}", f"{one['angle_deg']:.0f}°", lives
+        )
+    return table
 
 
 def contact_words(kinds: Sequence[ContactRecord], reactions: SeatReactions) -> str:

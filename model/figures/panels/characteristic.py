@@ -34,6 +34,7 @@ def characteristic(run: Run) -> Panel:
         end = min(abs(greatest) / rate, float(np.nanmax(travels, initial=0.0)) or 1.0)
         x, name = np.array([0.0, np.copysign(end, greatest)]), f"initial rate {rate:.4g} N/mm"
         traces.append(curve(x, rate * x, GREY, dash="dot", width=1.2, name=name))
+    traces += _working(summary)
     block = summary["free_length_before_mm"] - summary["block_height_mm"]
     finding = f"{compressed(greatest)} with up to {plain(abs(greatest))} N{_outcome(summary)}"
     layout = upright(block, f"block, {summary['block_height_mm']:.4g} mm high")
@@ -48,6 +49,17 @@ def characteristic(run: Run) -> Panel:
         height=HEIGHT,
         note="" if set_mm is None or len(found) > 2 else AGAIN,
     )
+
+
+def _working(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Points of the finished spring at its working states."""
+    states = [state for state in summary.get("working") or () if not state["reason"]]
+    if not states:
+        return []
+    travel = [summary["free_length_before_mm"] - state["length_mm"] for state in states]
+    marker = {"size": 9, "symbol": "square", "color": GREY}
+    trace = {"type": "scatter", "mode": "markers", "x": travel, "y": [state["force_N"] for state in states]}
+    return [trace | {"marker": marker, "name": "working lengths"}]
 
 
 def _curves(run: Run, found: list[Phase]) -> Iterator[tuple[Phase, np.ndarray, np.ndarray]]:

@@ -17,6 +17,8 @@ RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint*
 DERIVED = (
     "fields/*.vtu",
     "fields/*.pvd",
+    "fields/*.vtkhdf",
+    "modes/*",
     "characteristic.png",
     "springs.png",
     "cross_section.png",
@@ -25,6 +27,7 @@ DERIVED = (
     "buckling_mode.png",
     "section.png",
     "goodman.png",
+    "fatigue.png",
     "animation.gif",
     "report.html",
 )

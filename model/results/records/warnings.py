@@ -5,10 +5,12 @@ from itertools import pairwise
 from math import isfinite
 
 from coilset.model.base.warning import Warning
+from coilset.model.results.fatigue import fatigue_warnings
 from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 from coilset.model.results.records.releases import FREE, last_release
+from coilset.model.results.records.working import working_warnings
 from coilset.model.section import surface
 from coilset.model.standards.working import presetting_warning
 
@@ -300,4 +302,12 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
-FOUND: tuple[Check, ...] = (_strength, _step_error, _whole_error, _presetting, _longer)
+FOUND: tuple[Check, ...] = (
+    _strength,
+    _step_error,
+    _whole_error,
+    _presetting,
+    _longer,
+    working_warnings,
+    fatigue_warnings,
+)
