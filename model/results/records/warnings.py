@@ -259,33 +259,46 @@ MORE = {
 """What makes an error smaller, by its cause."""
 
 
+def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
+    """Errors by the requested accuracy of the numbers that it governs, by their names in Errors; of a set, at least
+    one that is noticed.
+
+    Args:
+        setup: Setup of a run that estimates errors.
+        result: Result with steps.
+    """
+    asked, release = setup.limits.accuracy or 0.0, last_release(setup, result)
+    found = {"force_N": asked * result.greatest_force}
+    if release is not None and release.set > 0.0:
+        found["set_mm"] = max(asked * release.set, NOTICED * setup.spring.free_length)
+    return {name: error for name, error in found.items() if error > 0.0}
+
+
 def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
     """The numbers whose error by all causes is above the accuracy that was asked for, unless the steps alone are."""
     asked, errors = setup.limits.accuracy, result.errors
     if asked is None or errors is None or any(_step_error(setup, result)):
         return
-    release = last_release(setup, result)
-    values = {"force_N": result.greatest_force, "set_mm": 0.0 if release is None else release.set}
-    noticed = {"force_N": 0.0, "set_mm": NOTICED * setup.spring.free_length}
     worst: dict[str, float] = {}
-    for name, value in values.items():
+    for name, allowed in allowed_errors(setup, result).items():
         error = getattr(errors.total, name)
-        if value > 0.0 and error is None:
+        if error is None:
             message = (
                 f"the error of the {NUMBERS[name]} by mesh, section points and contact could not be estimated; compare "
                 "with a run of more mesh.elements_per_turn"
             )
             yield Warning("unknown error", "mesh", message, None, asked)
             return
-        if value > 0.0 and error > max(asked * value, noticed[name]):
-            worst[name] = error / value
+        if error > allowed:
+            worst[name] = asked * error / allowed
     if worst:
         largest = max(worst, key=lambda name: worst[name])
         cause = errors.largest(largest)
         which = " and ".join(f"{100 * part:.2g} % of the {NUMBERS[name]}" for name, part in worst.items())
         message = (
             f"the estimated error is {which}, mostly because of the {CAUSES[cause]}, more than the case's accuracy of "
-            f"{100 * asked:.2g} %; {MORE[cause]}"
+            f"{100 * asked:.2g} %; {MORE[cause]}, and coilset solve runs again by itself where the case leaves that "
+            "out and it suffices"
         )
         yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], asked)
 
