@@ -27,7 +27,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import xarray as xr
@@ -51,9 +51,13 @@ from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
 from coilset.model.run.analysis import Analysis
+from coilset.model.run.refinement import within_accuracy
 from coilset.model.runtime.processes import usable_cores
 from coilset.model.runtime.threads import usual
 from coilset.model.sweep.study import Study as _Study
+
+if TYPE_CHECKING:
+    from coilset.model.vibration.modes import Modes
 
 __all__ = [
     "Case",
@@ -67,6 +71,7 @@ __all__ = [
     "Study",
     "design",
     "material",
+    "modes",
     "slice_",
     "solve",
     "sweep",
@@ -240,7 +245,7 @@ class Result:
 
         >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
         >>> print(f"{result.force_at(10):.0f} N when pressed, {result.force_at(15, phase=1):.0f} N on release")
-        178 N when pressed, 72 N on release
+        178 N when pressed, 71 N on release
         """
         return place_at(self.data, travel, phase).force
 
@@ -272,11 +277,11 @@ class Result:
 def solve(
     case: Case, report: Callable[[Step], object] = lambda step: None, threads: int | None = None, comm: Any = None
 ) -> Result:
-    """Run the load program of a case; collective.
+    """Run the load program of a case, and again finer where its errors exceed its accuracy; collective.
 
     Args:
         case: Case.
-        report: called with each converged Step.
+        report: called with each converged Step, of each run.
         threads: of each rank; default is as `coilset solve`. No number depends on it.
         comm: MPI communicator whose ranks share the spring; default is all.
 
@@ -287,15 +292,15 @@ def solve(
     >>> case = Case.read("examples/ck15_presetting.yaml")
     >>> result = solve(case)
     >>> print(f"set {result.set:.2f} mm of {result.summary['free_length_before_mm']:.0f} mm")
-    set 13.26 mm of 35 mm
+    set 13.29 mm of 35 mm
     """
     comm = MPI.COMM_WORLD if comm is None else comm
-    analysis = Analysis(case._case, comm, threads=threads or usual(comm.size))
-    analysis.run(report)
+    first = Analysis(case._case, comm, threads=threads or usual(comm.size))
+    analysis = within_accuracy(first, lambda one, _: one.run(report))
 
     def write(folder: Path) -> None:
         summary = summarise(analysis.setup, analysis.result)
-        write_run(folder, analysis.setup, analysis.result, summary, origin(case._case))
+        write_run(folder, analysis.setup, analysis.result, summary, origin(analysis.case))
 
     result = on_first_rank(comm, lambda: _temporary(write))
     copied = comm.bcast(result)
@@ -346,6 +351,32 @@ def slice_(case: Case, section: str | None = None) -> Result:
         write_summary(folder, {**summarise_slice(analysis), "origin": origin(case._case)})
 
     return _temporary(write)
+
+
+def modes(run: Case | str | Path, at: str = "end", count: int = 10, glued: bool = False) -> "Modes":
+    """Natural frequencies and modes of a spring after its load program, or at another load from there on; collective.
+
+    Args:
+        run: a Case, whose load program is run, or a results folder of `coilset solve` with its checkpoint.
+        at: `end`, or where the spring goes from there: `block`, `block-3mm`, `height=30`, `travel=5`, `force=100`.
+        count: of modes.
+        glued: whether coils that touch cannot slide on each other.
+
+    Returns:
+        Modes, with `frequencies`, Hz, `shapes`, `masses` and `eigenvalues` ω².
+
+    Raises:
+        InputError: there is no such run, or the state has no meaning.
+        SolveError: no equilibrium was found, or too few modes.
+
+    >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}, steps: 2}]", "accuracy=none"])
+    >>> print(f"{modes(case, count=1).frequencies[0]:.0f} Hz")
+    427 Hz
+    """
+    from coilset.model.vibration.loaded import after_results, after_run, loaded_modes
+
+    analysis = after_run(run._case, at) if isinstance(run, Case) else after_results(run, at)
+    return loaded_modes(analysis, count, glued)
 
 
 def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwrite: bool = False) -> xr.Dataset:

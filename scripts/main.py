@@ -235,6 +235,23 @@ def animate(
 
 
 @app.command()
+def modes(
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+    at: str = typer.Option(
+        "end", metavar="STATE", help="end, or from there: block, block-3mm, height=30, travel=5, force=100"
+    ),
+    count: int = typer.Option(10, min=1, max=1000, help="number of modes"),
+    glued: bool = typer.Option(False, "--glued", help="coils that touch cannot slide on each other"),
+    pictures: bool = typer.Option(True, help="draw the figure"),
+) -> None:
+    """Find natural frequencies and modes of the spring of a run, at its end or under another load, and write them."""
+    compile_first(stages=("rod",))
+    from coilset.scripts.commands.modes import modes as find
+
+    find(results, at, count, glued, pictures)
+
+
+@app.command()
 def sweep(
     sweep_file: str = typer.Argument(metavar="SWEEP", help="sweep file (YAML)"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-SWEEP]"),

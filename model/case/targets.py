@@ -41,6 +41,19 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
                 )
 
 
+def check_working(case: Case, spring: Spring, shear_modulus: float) -> None:
+    """Refuse working lengths and forces that no such spring can have; arguments and errors as of `check_targets`."""
+    lowest, greatest = lowest_height(case, spring), BORNE * closing_force(spring, shear_modulus)
+    highest, slack = spring.free_length if case.ends == "seats" else np.inf, SLACK * spring.free_length
+    for place, target in case.working.targets if case.working else ():
+        if target.height is not None and not lowest - slack <= target.height <= highest + slack:
+            ends = f"the block height of {lowest:.6g} mm and the free length of {spring.free_length:.6g} mm"
+            raise InputError(f"is {target.height:g} mm; must be between {ends}", place)
+        if target.force is not None and not (0.0 if case.ends == "seats" else -np.inf) <= target.force <= greatest:
+            limit = f"0 and {greatest:.4g} N, twice the force at which all coils are in contact"
+            raise InputError(f"is {target.force:g} N; must be between {limit}", place)
+
+
 def lowest_height(case: Case, spring: Spring) -> float:
     """The minimum height of a target, mm: at block, or 0 between seats for which the block height is unknown."""
     flat = case.ends == "clamped" or {case.seats.bottom.shape, case.seats.top.shape} == {"flat"}

@@ -1,13 +1,14 @@
 """Conditions of a design: the number of a run that each concerns, where it is read, and its deviation."""
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from coilset.model.base.errors import InputError
 from coilset.model.design.file import Conditions, DesignFile, Limits
 from coilset.model.results.records.units import quantity, unit_of
+from coilset.model.results.records.working import asked
 
 GROUP = "such_that."  # before the names of conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
@@ -45,7 +46,7 @@ class Condition:
     @property
     def short_name(self) -> str:
         """Without the group and the limit; of a number of the summary, its name there."""
-        return without_limit(self.name).removeprefix(GROUP)
+        return without_limit(self.name).removeprefix(GROUP).removeprefix("working.")
 
     @property
     def words(self) -> str:
@@ -98,6 +99,9 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
     if isinstance(program, dict):  # {accuracy: …, program: […]}
         program = program["program"]
     found = [one for name, value in _results(spec.such_that) for one in _conditions(f"{GROUP}{name}", value)]
+    numbers = spec.such_that.working
+    found += [one for name, value in numbers.items() for one in _conditions(f"{GROUP}working.{name}", value)]
+    _visit(data, numbers)
     missing = sorted({at.height for at in spec.such_that.force_at if _phase(program, at.height) is None}, reverse=True)
     released = _is_release(program[-1])
     needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
@@ -114,6 +118,17 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
         name = f"{GROUP}force_at" + (f".{number}" if len(spec.such_that.force_at) > 1 else "")
         found += _conditions(name, at.N, at.height, _phase(program, at.height))
     return found, data
+
+
+def _visit(data: dict[str, Any], names: Iterable[str]) -> None:
+    """Let the case of these numbers of working states go there."""
+    for name in names:
+        kind, value = asked(name)
+        there = data.setdefault("working", {}) or {}
+        values = there.setdefault("lengths" if kind == "length" else "forces", [])
+        if value not in values:
+            values.append(value)
+        data["working"] = there
 
 
 def _results(wanted: Conditions) -> list[tuple[str, float | Limits]]:

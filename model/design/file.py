@@ -14,8 +14,17 @@ from coilset.model.base.yaml import read_data
 from coilset.model.case.case import Case, check, read_case_data
 from coilset.model.case.settings import located
 from coilset.model.design.unknowns import Choices, Name, Unknown, refuse_twice
+from coilset.model.results.records.working import QUANTITIES, is_working_number, number_name
 
 KIND = "a design file holds the entries find: and such_that:, and those of a case or case: with the name of its file"
+
+
+def _of_working(name: str) -> str:
+    """A number of a working state."""
+    if not is_working_number(name):
+        numbers = ", ".join(number_name(quantity, 37) for quantity in QUANTITIES if quantity != "length")
+        raise ValueError(f"'{shortened(name)}' is no number of a working state; they are {numbers}, length_at_250_mm")
+    return name
 
 
 def _not_zero(value: float) -> float:
@@ -60,6 +69,7 @@ Length = Annotated[Annotated[float, Unit("mm"), Positive, Tag("(value)")] | OrLi
 Force = Annotated[Annotated[float, Unit("N"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Rate = Annotated[Annotated[float, Unit("N/mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Work = Annotated[Annotated[float, Unit("N/mm²"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+Size = Annotated[Annotated[float, Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Stress = Annotated[
     Annotated[float, Unit("MPa"), AfterValidator(_not_zero), Tag("(value)")] | OrLimits,
     OR_LIMITS,
@@ -101,6 +111,15 @@ class Conditions(Strict):
         Work | None, Field(description="maximum plastic work b* on the surface, N/mm²")
     ] = None
 
+    working: Annotated[
+        dict[Annotated[str, AfterValidator(_of_working)], Size],
+        Unit("of the result"),
+        Field(
+            description="numbers of the finished spring at working lengths, such as force_at_37_N: 250 or "
+            "safety_at_37: {at_least: 1.1}"
+        ),
+    ] = Field(default_factory=dict)
+
     @model_validator(mode="after")
     def _some(self) -> Self:
         if not any(value for _, value in self):
@@ -128,7 +147,9 @@ class DesignFile(Strict):
     @model_validator(mode="after")
     def _enough(self) -> Self:
         refuse_twice(self.find)
-        conditions = sum(len(value) if isinstance(value, list) else value is not None for _, value in self.such_that)
+        conditions = sum(
+            len(value) if isinstance(value, list | dict) else value is not None for _, value in self.such_that
+        )
         ranges = [name for name, one in self.find.items() if not isinstance(one, Choices)]
         if conditions < len(ranges):
             raise ValueError(

@@ -1,4 +1,4 @@
-"""Time series for ParaView: the centre line, the wire as a closed tube, and the section points."""
+"""Time series for ParaView: the centre line, the wire as a closed tube, and the section points; each in two formats."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator
@@ -7,6 +7,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 
+from coilset.model.figures.vtkhdf import write_vtkhdf
 from coilset.model.figures.wire import frames, section_points, tubes
 from coilset.model.results.files.folder import make, whole
 from coilset.model.results.files.opened import Run
@@ -16,12 +17,12 @@ Series = Iterable[tuple[float, meshio.Mesh]]
 
 
 def write_series(run: Run) -> list[Path]:
-    """Write fields/line.pvd, wire.pvd and sections.pvd, each with a file for each of its times.
+    """Write line, wire and sections in fields/, each as .vtkhdf and as .pvd with a file for each of its times.
 
     Times are numbers of steps; the section points are known at the start and where phases end.
 
     Returns:
-        The three files.
+        The six files.
 
     Raises:
         CoilsetError: if one cannot be written.
@@ -29,7 +30,11 @@ def write_series(run: Run) -> list[Path]:
     folder = run.folder / "fields"
     make(folder)
     parts = {"line": _lines(run), "wire": _wires(run), "sections": _sections(run)}
-    return [_write(folder, name, series) for name, series in parts.items()]
+    files = []
+    for name, meshes in parts.items():
+        series = list(meshes)
+        files += [_write(folder, name, series), write_vtkhdf(folder / f"{name}.vtkhdf", series)]
+    return files
 
 
 def _lines(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
@@ -46,15 +51,19 @@ def _wires(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
     shown = frames(run)
     rings = PER_ELEMENT * (run.data.sizes["station"] - 1) + 1
     places, stress = tubes(run, shown, rings)
-    around = places.shape[2] - 1
+    cells = tube_cells(rings, places.shape[2] - 1)
+    for time, place, value in zip(_times(run), places, stress, strict=True):
+        data = {"shear_MPa": value[:, :-1].ravel().astype(float)}
+        yield time, meshio.Mesh(place[:, :-1].reshape(-1, 3), cells, point_data=data)
+
+
+def tube_cells(rings: int, around: int) -> list[tuple[str, np.ndarray]]:
+    """Cells of a closed tube with its points by rings: quadrilaterals, and triangles over the tips."""
     number = np.arange(rings * around).reshape(rings, around)
     following = np.roll(number, -1, axis=1)
     sides = np.stack([number[:-1], following[:-1], following[1:], number[1:]], axis=-1).reshape(-1, 4)
     fan = np.stack([np.zeros(around - 2, int), np.arange(2, around), np.arange(1, around - 1)], axis=-1)
-    cells = [("quad", sides), ("triangle", np.concatenate([number[0][fan], number[-1][fan[:, ::-1]]]))]
-    for time, place, value in zip(_times(run), places, stress, strict=True):
-        data = {"shear_MPa": value[:, :-1].ravel().astype(float)}
-        yield time, meshio.Mesh(place[:, :-1].reshape(-1, 3), cells, point_data=data)
+    return [("quad", sides), ("triangle", np.concatenate([number[0][fan], number[-1][fan[:, ::-1]]]))]
 
 
 def _sections(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:

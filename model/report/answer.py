@@ -57,6 +57,8 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         inside, 1
     ):  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
         against = "against the load" if inside * s["force_max_N"] < 0.0 else "with the load"
+    if s.get("turn_max_deg") is not None:
+        return _turned(s)
     return [
         Number("set", _within(s["set_mm"], s.get("estimated_set_error_mm"), "mm", 3), share),
         Number("free length", _within(after, s.get("estimated_set_error_mm"), "mm", 3), _lengths(s)),
@@ -67,8 +69,39 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         ),
         Number("maximum force", _within(s["force_max_N"], s.get("estimated_force_error_N"), "N", 1), _errors(s)),
         Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
+        *_tension(s),
         Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", with_unit(s["block_height_mm"], "mm", 2)),
+    ]
+
+
+def _tension(s: Mapping[str, Any]) -> list[Number]:
+    """Of a spring whose coils are wound onto each other."""
+    if s.get("initial_tension_N") is None:
+        return []
+    after = s["initial_tension_after_N"]
+    left = "" if after is None else f"{with_unit(after, 'N', 1)} after the last release"
+    rate = with_unit(s["open_rate_N_per_mm"], "N/mm", 3)
+    held = Number("initial tension", with_unit(s["initial_tension_N"], "N", 1), left)
+    return [held, Number("rate, coils open", rate)]
+
+
+def _turned(s: Mapping[str, Any]) -> list[Number]:
+    """Of a torsion spring: set in degrees first, then the residual bending stress, torque and rate."""
+    inside, outside = (with_unit(s[f"residual_bending_{side}_MPa"], "MPa", 1) for side in ("inside", "outside"))
+    rate = with_unit(s["turn_rate_Nmm_per_deg"], "N mm/°", 3)
+    after = s["turn_rate_after_Nmm_per_deg"]
+    return [
+        Number("set", with_unit(s["turn_set_deg"], "°", 2, "none"), f"of {s['turn_max_deg']:.4g}° of rotation"),
+        Number("residual bending stress", inside, f"inside of the coil; {outside} outside; positive in tension"),
+        Number("maximum torque", with_unit(s["torque_max_Nmm"], "N mm", 0)),
+        Number(
+            "maximum bending stress",
+            with_unit(s["max_bending_inside_MPa"], "MPa", 0),
+            f"inside of the coil; {with_unit(s['max_bending_outside_MPa'], 'MPa', 0)} outside",
+        ),
+        Number("rate", rate, "" if after is None else f"{with_unit(after, 'N mm/°', 3)} on release"),
+        Number("inner diameter", with_unit(s["inner_diameter_min_mm"], "mm", 2), "smallest, for an arbor"),
     ]
 
 
@@ -98,3 +131,42 @@ def _errors(summary: Mapping[str, Any]) -> str:
 def _after(summary: Mapping[str, Any]) -> str:
     rate = summary["rate_30_70_after_N_per_mm"]
     return "" if rate is None else f"{rate:.3f} N/mm on release, between 30 and 70 % of the travel"
+
+
+WORKING_HEADS = (
+    "length, mm",
+    "force, N",
+    "rate, N/mm",
+    "τ, MPa",
+    "τk, MPa",
+    "true, inside, MPa",
+    "at turn",
+    "safety",
+    "force centre, x and y, mm",
+)
+"""Columns of `working_rows`."""
+
+
+def working_rows(summary: Mapping[str, Any]) -> list[list[str]]:
+    """The finished spring at its working states, of summary.json, a row of texts each; none of earlier versions."""
+    return [_working(state) for state in summary.get("working") or ()]
+
+
+def _working(state: Mapping[str, Any]) -> list[str]:
+    if state["reason"]:
+        wanted = [f"{state[name]:g}" if name in state else "–" for name in ("length_wanted", "force_wanted")]
+        return [*wanted, state["reason"], *[""] * (len(WORKING_HEADS) - 3)]
+    is_length, error = "length_wanted" in state, state["estimated_error"]
+    x, y = (state[f"bottom_centre_{axis}_mm"] for axis in "xy")
+    cells = [
+        within(state["length_mm"], None if is_length else error, "", 3),
+        within(state["force_N"], error if is_length else None, "", 2),
+        with_unit(state["rate_N_per_mm"], "", 3, "–"),
+        with_unit(state["shear_MPa"], "", 0, "–"),
+        with_unit(state["corrected_shear_MPa"], "", 0, "–"),
+        with_unit(state["shear_inside_MPa"], "", 0, "–"),
+        with_unit(state["shear_inside_turn"], "", 2, "–"),
+        with_unit(state["safety"], "", 2, "–"),
+        "–" if x is None else f"{x:.2f}, {y:.2f}",
+    ]
+    return [cell.strip().replace("-", "−") for cell in cells]

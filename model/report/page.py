@@ -10,12 +10,13 @@ from coilset.model.figures.panels.along_wire import moments_along_wire, stress_a
 from coilset.model.figures.panels.buckling import buckling_axis, buckling_mode
 from coilset.model.figures.panels.characteristic import characteristic, rate_curve
 from coilset.model.figures.panels.cost import cost, step_error
+from coilset.model.figures.panels.fatigue import fatigue_map, fatigue_view
 from coilset.model.figures.panels.material_curves import material_curve
 from coilset.model.figures.panels.panel import Panel
 from coilset.model.figures.panels.seats import active_turns, contact, contact_length, eccentricity, force_centre
 from coilset.model.figures.panels.section_map import normal_map, shear_map
 from coilset.model.figures.panels.spring_view import spring_view
-from coilset.model.report.answer import answer, subtitle
+from coilset.model.report.answer import WORKING_HEADS, answer, subtitle, working_rows
 from coilset.model.report.first_sheet import first_sheet
 from coilset.model.report.maker_sheet import maker_sheet
 from coilset.model.report.render import write_page
@@ -26,6 +27,7 @@ CHAPTERS: tuple[tuple[str, tuple[Callable[[Run], Panel | None], ...]], ...] = (
     ("The spring", (spring_view,)),
     ("Stress in the wire", (shear_map, normal_map)),
     ("Along the wire", (stress_along_wire, moments_along_wire)),
+    ("Fatigue", (fatigue_map, fatigue_view)),
     ("Seats and coils", (force_centre, eccentricity, contact, contact_length, active_turns)),
     ("Buckling", (buckling_mode, buckling_axis)),
     ("Material", (material_curve,)),
@@ -55,8 +57,10 @@ def write_report(run: Run) -> Path:
         answer=found,
         sheet=maker_sheet(run),
         first=first_sheet(run),
+        working=working_rows(run.summary),
         case=_text(case),
         files=files,
+        heads=WORKING_HEADS,
         made_with=made_with(run.summary["origin"]),
     )
 

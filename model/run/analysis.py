@@ -2,7 +2,7 @@
 
 import logging
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal, Protocol
 
 import numpy as np
@@ -12,8 +12,8 @@ from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.body.state import State
 from coilset.model.case import Case
-from coilset.model.case.phases import Phase, TimePhase, drives_at, heads_of
-from coilset.model.case.targets import check_steps, check_targets, check_times
+from coilset.model.case.phases import AnyPhase, Phase, TimePhase, drives_at, heads_of
+from coilset.model.case.targets import check_steps, check_targets, check_times, check_working
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.equilibrium.path.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.path.stability import Stability
@@ -21,8 +21,8 @@ from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
 from coilset.model.manufacture.initial_state import give_past
 from coilset.model.results.files.checkpoint import Saved
-from coilset.model.results.records.balance import imbalance
 from coilset.model.results.records.record import Result, Snapshot, Step
+from coilset.model.run.balance import imbalance
 from coilset.model.run.build import (
     build_continuation,
     build_control,
@@ -32,8 +32,9 @@ from coilset.model.run.build import (
     build_setup,
     build_wire,
 )
-from coilset.model.run.companion import estimated
+from coilset.model.run.companion import estimated, without_errors
 from coilset.model.run.recorder import Recorder
+from coilset.model.run.working import working_states
 from coilset.model.standards.wires.law import case_law
 
 log = logging.getLogger("coilset.steps")
@@ -64,6 +65,7 @@ class Analysis:
     Attributes:
         setup: Setup of the records.
         result: Result up to now.
+        threads: of each rank.
         system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
 
@@ -75,12 +77,13 @@ class Analysis:
         threads: int = 1,
         estimates: bool = True,
     ) -> None:
-        self.case, self.comm = case, comm
+        self.case, self.comm, self.threads = case, comm, threads
         self._estimates = estimates and case.steps_error is not None
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)
         check_steps(case)
         check_targets(case, spring, self.law.G)
+        check_working(case, spring, self.law.G)
         check_times(case, self.law)
         wire = build_wire(case, spring, self.law, comm, threads)
         self.rod = wire.rod
@@ -148,6 +151,7 @@ class Analysis:
         """
         try:
             if not self.result.snapshots:
+                self._settle_coils()
                 self.recorder.begin(self.initial_rate())
             touched()
             for number in range(self.program.number, len(self.case.loading)):
@@ -163,8 +167,22 @@ class Analysis:
             self.system.restore()
             self.recorder.add_snapshot("last equilibrium")
             raise
-        self.recorder.end(estimated(self) if self._estimates and self.result.steps else self.result)
+        self.recorder.add_working(working_states(self))
+        self.recorder.end(estimated(self) if self._estimates and self.result.steps else without_errors(self.result))
         return self.result
+
+    def _settle_coils(self) -> None:
+        """Let coils that are wound onto each other carry the tension of their wire, without a load on the spring.
+
+        Raises:
+            SolveError: if they find no equilibrium.
+        """
+        if "initial_tension" not in self.case.past:
+            return
+        outcome = self.continuation.attempt(self.control.to_force(0.0))
+        if not outcome.converged:
+            raise SolveError(f"the wound coils find no equilibrium without load: {outcome.reason}")
+        self.program.begin(0)
 
     def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:
         """Let heat flow for the time that the last step took; the step, with what that cost."""
@@ -236,9 +254,10 @@ class Analysis:
                 problem,
             )
 
-    def stage(self, number: int) -> Stage:
-        """A phase of the case, by its number, in the form that the load program expects."""
-        phase, drives = self.case.loading[number], drives_at(self.case.loading, number)
+    def stage(self, number: int, loading: Sequence[AnyPhase] = ()) -> Stage:
+        """A phase of the case, or of another `loading`, by its number, in the form that the load program expects."""
+        loading = loading or self.case.loading
+        phase, drives = loading[number], drives_at(loading, number)
         steps = tuple(phase.steps) if isinstance(phase.steps, list) else phase.steps
         if isinstance(phase, TimePhase):
             time = phase.duration
@@ -250,7 +269,7 @@ class Analysis:
         if phase.drives_axially:
             kind, value = phase.goal(self.spring.free_length, self.spring.block_height)
         elif number:  # as the last phase left it
-            kind = self.stage(number - 1).kind
+            kind = self.stage(number - 1, loading).kind
         return Stage(kind, value, steps, phase.label, hours, even=True, drives=drives)
 
     def _keep(self, save: Save | None) -> None:
@@ -275,5 +294,5 @@ class Analysis:
         return float(force / (before - after))
 
     def imbalance(self) -> tuple[float, float]:
-        """Largest imbalance over all cuts now, N and N mm; see coilset.model.results.records.balance; collective."""
+        """Largest imbalance over all cuts now, N and N mm; see coilset.model.run.balance; collective."""
         return imbalance(self.snapshot("balance"), self.system, self.control)

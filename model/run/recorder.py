@@ -21,6 +21,7 @@ from coilset.model.results.records.record import BucklingMode, Frame, Result, Se
 from coilset.model.results.records.seat_reactions import faint_force, mean_torque, seat_reactions
 from coilset.model.results.records.shape import LeastRise, clearance
 from coilset.model.results.records.warnings import step_warnings
+from coilset.model.results.records.working import Working
 from coilset.model.rod.rod import Rod
 from coilset.model.section import surface
 
@@ -61,6 +62,10 @@ class Recorder:
         """Continue with the result of a checkpoint."""
         self.result, self._warned = result, None
 
+    def add_working(self, working: Working | None) -> None:
+        """Record the finished spring at its working lengths."""
+        self.result = replace(self.result, working=working)
+
     def end(self, result: Result) -> None:
         """The load program is complete, with this result."""
         self.result = replace(result, complete=True)
@@ -81,7 +86,7 @@ class Recorder:
             self.result = replace(self.result, mode=mode)
         before, seats, frames = self.result, self.result.seats, self.result.frames
         if self._detailed:
-            seats, frames = (*seats, self._seat_reactions(step.number, greatest)), (*frames, self._frame(x))
+            seats, frames = (*seats, self.seat_reactions(step.number, greatest)), (*frames, self._frame(x))
         self.result = replace(before, steps=(*before.steps, step), seats=seats, frames=frames)
         if self._detailed:
             self._announce(before)
@@ -150,7 +155,7 @@ class Recorder:
         mean = around.mean(axis=1)
         return Frame(x, self.rod.line.in_order(mean.astype(np.float32)))
 
-    def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
+    def seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
         """The seats' reactions at the last equilibrium; keeps its torque and force for the next step's active turns."""
         before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
         force, torque = now = self.control.force, mean_torque(self.rod)

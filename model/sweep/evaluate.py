@@ -16,6 +16,7 @@ from coilset.model.case import Case, check
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.records.summary_entries import NUMBERS
+from coilset.model.results.records.working import is_working_number
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.engines.pool import Record, Task
@@ -74,8 +75,9 @@ def evaluate(
         record["steps"] = {
             column.name: [plain(getattr(step, column.name)) for step in result.steps] for column in fields(Step)
         }
-    del analysis, result
-    gc.collect()  # solver and system refer to each other
+    if analysis is not None:
+        del analysis, result
+        gc.collect()  # solver and system refer to each other
     return {**record, "seconds": time.perf_counter() - began}
 
 
@@ -84,7 +86,7 @@ def estimated(case: Case, keys: Keys) -> dict[str, Any]:
     spring = case.spring.build()
     law = keys.law(case.material) if isinstance(case.material, str) else case_law(case, spring)
     numbers = estimate(case, spring, law).numbers
-    return {name: plain(value) for name, value in numbers.items() if name in NUMBERS}
+    return {name: plain(value) for name, value in numbers.items() if name in NUMBERS or is_working_number(name)}
 
 
 def evaluate_in_worker(tasks: list[Task], comm: MPI.Comm) -> list[Record]:

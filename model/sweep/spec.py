@@ -11,6 +11,7 @@ from scipy import stats
 
 from coilset.model.base.entry import Strict, Whole, shortened
 from coilset.model.results.records.summary_entries import NUMBERS
+from coilset.model.results.records.working import is_working_number
 
 LISTED = 8  # maximum number of names in a message
 RESPONSES = (*NUMBERS, "seconds")  # of a case's summary, and its duration
@@ -259,8 +260,9 @@ class SweepSpec(Strict):
                 either = role == "colour" and figure.kind == "characteristics"
                 known = responses if role == "of" else [*self.vary, *responses] if either else list(self.vary)
                 for name in _names(getattr(figure, role, None)):
-                    if name not in known:
-                        what = "no response of a case" if role == "of" or either else "none of the varied inputs"
+                    of_working = role == "of" or either
+                    if name not in known and not (of_working and is_working_number(name)):
+                        what = "no response of a case" if of_working else "none of the varied inputs"
                         near = get_close_matches(name, known, 1)
                         there = f"there are {', '.join(known)}" if len(known) <= LISTED else f"one is {known[0]}"
                         hint = f"is {near[0]} meant?" if near else there

@@ -12,7 +12,8 @@ import numpy as np
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case.case import Case
 from coilset.model.case.phases import Phase
-from coilset.model.case.targets import check_targets
+from coilset.model.case.targets import check_targets, check_working
+from coilset.model.case.working import WorkingSpec
 from coilset.model.material.law.law import Law
 from coilset.model.section.rules import polar, upper_half
 from coilset.model.uniform.equivalent import coil
@@ -48,6 +49,7 @@ def estimate(case: Case, spring: Spring, law: Law) -> Estimate:
         SolveError: if no equilibrium is found.
     """
     check_targets(case, spring, law.G)
+    check_working(case, spring, law.G)
     length, free = spring.free_length, case.ends_turn
     one, temperature = coil(spring), case.temperature
     found = {"free_length_before_mm": length, "block_height_mm": spring.block_height}
@@ -71,6 +73,27 @@ def estimate(case: Case, spring: Spring, law: Law) -> Estimate:
     found["force_max_N"] = greatest
     if force == 0.0 or abs(force) < 1e-6 * greatest:
         found |= {"free_length_after_mm": length - travel, "set_mm": travel}
+    if case.working is not None:
+        found |= _working(case.working, state, law, free, temperature, length)
     # τ = √(k²/2) in torsion (3.1.4), T = π d³ τ / 16
     yielding = law.first_yield(temperature) / sqrt(3.0) * pi * one[0] ** 3 / 16.0
     return Estimate(found, torque / yielding if isfinite(yielding) else 0.0)
+
+
+def _working(
+    working: WorkingSpec,
+    state: UniformState | np.ndarray,
+    law: Law,
+    free: bool,
+    temperature: float | None,
+    length: float,
+) -> dict[str, float]:
+    """Forces at the working lengths and lengths under the working forces, each from the end of the load program."""
+    found = {}
+    for at in working.lengths:
+        forces, _ = press(state, law, np.array([length - at]), None, RULE, free, temperature)
+        found[f"force_at_{at:g}_N"] = float(forces[0, 0])
+    for at in working.forces:
+        travels, _ = press(state, law, None, np.array([at]), RULE, free, temperature)
+        found[f"length_at_{at:g}_mm"] = length - float(travels[0, 0])
+    return found

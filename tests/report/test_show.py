@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 import pyvista as pv
 from PIL import Image
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
+from vtkmodules.vtkIOHDF import vtkHDFReader
 
 from coilset.model.base.errors import InputError
 from coilset.model.figures.animation import animate
@@ -22,7 +24,26 @@ def run(folder):
 
 @pytest.fixture(scope="module")
 def read(run):
-    return [pv.PVDReader(path) for path in write_series(run)]
+    return [pv.PVDReader(path) for path in write_series(run) if path.suffix == ".pvd"]
+
+
+def test_the_file_of_all_times_holds_the_same(run):
+    """As VTK's own reader of VTKHDF sees it."""
+    for path in write_series(run):
+        if path.suffix != ".vtkhdf":
+            continue
+        hdf, files = vtkHDFReader(), pv.PVDReader(path.with_suffix(".pvd"))
+        hdf.SetFileName(str(path))
+        hdf.UpdateInformation()
+        times = hdf.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+        assert list(times) == files.time_values
+        for time in (times[0], times[-1]):
+            hdf.UpdateTimeStep(time)
+            ours, theirs = pv.wrap(hdf.GetOutput()), mesh(files, time)
+            assert np.array_equal(ours.points, theirs.points)
+            assert np.array_equal(ours.cells, theirs.cells)
+            for name in (*theirs.point_data, *theirs.cell_data):
+                assert np.array_equal(ours[name], theirs[name]), name
 
 
 @pytest.mark.parametrize(

@@ -13,10 +13,12 @@ from typing import Any
 from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.results.records.record import SeatReactions, Step
 
-RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint/*.npz", "checkpoint/*.jsonl")
+RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint*/*.npz", "checkpoint*/*.jsonl")
 DERIVED = (
     "fields/*.vtu",
     "fields/*.pvd",
+    "fields/*.vtkhdf",
+    "modes/*",
     "characteristic.png",
     "springs.png",
     "cross_section.png",
@@ -25,6 +27,7 @@ DERIVED = (
     "buckling_mode.png",
     "section.png",
     "goodman.png",
+    "fatigue.png",
     "animation.gif",
     "report.html",
 )

@@ -3,7 +3,7 @@
 import math
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,10 +11,15 @@ from coilset.meshes.springs.ends import ENDS
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
+from coilset.model.fatigue.strength import Strength
+from coilset.model.material.law.file import CreepTests
 from coilset.model.results.records.frame import Frame
 from coilset.model.rod.elements import Element
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
+
+if TYPE_CHECKING:  # its records hold those of here
+    from coilset.model.results.records.working import Working
 
 
 @dataclass(frozen=True)
@@ -247,12 +252,18 @@ class Limits:
         penetration: usual maximum penetration, mm.
         accuracy: requested error due to the step size, over the maximum force and over the set; None: it is
             not estimated.
+        shear: shear stress allowed at block for a wire of a standard, MPa; None: no such wire is named.
+        shear_of: which stress it limits, `corrected stress` or `uncorrected stress`.
+        creep: range of the tests that the constants of creep are from, None if it is unknown or nothing creeps.
     """
 
     plastic_work: float
     strength: float | None
     penetration: float
     accuracy: float | None
+    shear: float | None = None
+    shear_of: str = ""
+    creep: CreepTests | None = None
 
 
 @dataclass(frozen=True)
@@ -277,6 +288,8 @@ class Setup:
         warnings: Warnings about the case, before it ran.
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
         force_line: ForceLine, or None.
+        wound_solid: whether coils press on each other before any load.
+        strength: Strength of the wire in fatigue, or None.
     """
 
     spring: Spring
@@ -296,6 +309,8 @@ class Setup:
     warnings: tuple[Warning, ...] = ()
     coiling_diameter: float | None = None
     force_line: ForceLine | None = None
+    wound_solid: bool = False
+    strength: Strength | None = None
 
     @property
     def slender(self) -> bool:
@@ -396,6 +411,7 @@ class Result:
         warnings: Warnings of moments that its other records do not show.
         mode: BucklingMode of a spring that is slender enough to buckle; else None.
         errors: RunErrors of a complete run; None where they are not estimated.
+        working: the finished spring at its working lengths; None without any, and until the run is complete.
     """
 
     steps: tuple[Step, ...] = ()
@@ -407,6 +423,7 @@ class Result:
     warnings: tuple[Warning, ...] = ()
     mode: BucklingMode | None = field(default=None, repr=False)
     errors: RunErrors | None = None
+    working: "Working | None" = field(default=None, repr=False)
 
     @property
     def greatest_force(self) -> float:

@@ -1,5 +1,6 @@
 """The summary of a run."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from math import isfinite
@@ -7,19 +8,25 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.base.errors import InputError
+from coilset.model.results.fatigue import fatigue
 from coilset.model.results.records.buckling import buckling
-from coilset.model.results.records.rates import rates
+from coilset.model.results.records.rates import rates, tension, turning
 from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
-from coilset.model.results.records.releases import Release, releases
+from coilset.model.results.records.releases import Release, is_turned, releases
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
+from coilset.model.results.records.working import WorkingState, plastic_rise, working_numbers
 from coilset.model.section import surface
+from coilset.model.standards import en13906
+from coilset.model.standards.cylinder import Cylinder
 
 
 def summarise(setup: Setup, result: Result) -> dict[str, Any]:
-    """The Summary of a run as plain data, as in summary.json; see `summary`."""
-    plain = asdict(summary(setup, result))
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in plain.items()}
+    """The Summary of a run as plain data, as in summary.json, with the numbers of working states; see `summary`."""
+    made = summary(setup, result)
+    plain = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(made).items()}
+    return plain | working_numbers(made.working)
 
 
 def summary(setup: Setup, result: Result) -> Summary:
@@ -55,8 +62,16 @@ def summary(setup: Setup, result: Result) -> Summary:
         shear_inside_max_MPa=max(shear_inside(setup, one)[0] for one in result.snapshots),
         **peaks(setup, "residual_", [shot] if shot else []),
         **peaks(setup, "", result.snapshots),
+        **bending(setup, "residual_", [shot] if shot else []),
+        **bending(setup, "max_", result.snapshots),
+        inner_diameter_min_mm=min(inner_diameter(setup, one) for one in result.snapshots),
+        **turning(setup, result, release),
+        **tension(setup, result, release),
         **plastic_work(setup, result),
-        **estimated_errors(result),
+        **estimated_errors(setup, result),
+        working=working_entries(setup, result),
+        working_set_mm=result.working.set if result.working else None,
+        fatigue=fatigue(setup, result),
         load_loss_percent=load_loss(result),
         coiling_diameter_mm=setup.coiling_diameter,
         measured_axis_offset_mm=axis.offset if axis else None,
@@ -95,9 +110,12 @@ def _release(release: Release) -> dict[str, Any]:
     }
 
 
-def estimated_errors(result: Result) -> dict[str, Any]:
-    """Errors of maximum force, set and residual shear: in total, and by their causes; None where not estimated."""
-    errors = result.errors
+def estimated_errors(setup: Setup, result: Result) -> dict[str, Any]:
+    """Errors of maximum force, set and residual shear: in total, and by their causes; None where not estimated.
+
+    Nor are they in torsion, where axial force and loss of length are close to zero.
+    """
+    errors = None if is_turned(setup, result.steps) else result.errors
     total = Errors(None, None, None) if errors is None else errors.total
     return {
         "estimated_force_error_N": total.force_N,
@@ -146,10 +164,32 @@ def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
     halves are alike, the first.
     """
     among = is_middle(setup)
-    middle = setup.inside.shear(snapshot.surface_state, snapshot.components)[among]
-    size = np.abs(middle)
+    values = setup.inside.shear(snapshot.surface_state, snapshot.components)[among]
+    size = np.abs(values)
     at = int(np.argmax(size >= (1.0 - surface.TIE) * size.max()))
-    return float(middle[at]), float(setup.section_turns[among][at])
+    return float(values[at]), float(setup.section_turns[among][at])
+
+
+def bending(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+    """Stress along the wire on the surface at the inside and the outside of the coil, MPa, positive in tension.
+
+    Of each the value of largest magnitude in the middle turns and the snapshots; None without snapshots.
+    """
+    found: dict[str, Any] = {}
+    for name, angle in (("inside", 0.0), ("outside", math.pi)):
+        values = []
+        for shot in snapshots:
+            along = surface.component(shot.surface_state, shot.components, "s11")[is_middle(setup)]
+            place = round((setup.inside.angle + angle) / (2.0 * math.pi) * along.shape[-1]) % along.shape[-1]
+            values += [float(along[..., place].min()), float(along[..., place].max())]
+        found[f"{prefix}bending_{name}_MPa"] = max(values, key=abs, default=None)
+    return found
+
+
+def inner_diameter(setup: Setup, snapshot: Snapshot) -> float:
+    """Diameter of the largest arbor about the axis that the coils leave room for, mm."""
+    radius = 0.5 * setup.spring.wire_diameter(setup.turns)
+    return 2.0 * float((np.hypot(snapshot.x[:, 0], snapshot.x[:, 1]) - radius).min())
 
 
 def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
@@ -180,3 +220,63 @@ def plastic_work(setup: Setup, result: Result) -> dict[str, Any]:
         "plastic_work_max_angle_deg": top.angle if top.value > 0.0 else None,
         "plastic_work_known_to_N_per_mm2": setup.limits.plastic_work,
     }
+
+
+def working_entries(setup: Setup, result: Result) -> tuple[dict[str, Any], ...]:
+    """Entries of summary.json, one for each working state."""
+    if result.working is None:
+        return ()
+    return tuple(_entry(setup, result, state) for state in result.working.states)
+
+
+def _entry(setup: Setup, result: Result, state: WorkingState) -> dict[str, Any]:
+    shot, seats = state.snapshot, state.seats
+    if shot is None or seats is None:
+        return {f"{state.kind}_wanted": state.value, "reason": state.reason}
+    stresses = nominal(setup, state.force)
+    inside, turn = shear_inside(setup, shot)
+    peak = shear_peak(setup, shot)
+    return {
+        f"{state.kind}_wanted": state.value,
+        "reason": "",
+        "length_mm": state.length,
+        "force_N": state.force,
+        "estimated_error": state.error,
+        "rate_N_per_mm": state.rate if np.isfinite(state.rate) else None,
+        "shear_MPa": stresses[0],
+        "corrected_shear_MPa": stresses[1],
+        "shear_inside_MPa": inside,
+        "shear_inside_turn": turn,
+        "shear_surface_MPa": peak.value,
+        "shear_surface_turn": peak.turn,
+        "shear_surface_angle_deg": peak.angle,
+        "allowed_MPa": setup.limits.shear,
+        "allowed_of": setup.limits.shear_of if setup.limits.shear else "",
+        "safety": _safety(setup, *stresses),
+        "plastic_work_rise_N_per_mm2": plastic_rise(result, shot),
+        "bottom_centre_x_mm": _known(seats.bottom.centre_x_mm),
+        "bottom_centre_y_mm": _known(seats.bottom.centre_y_mm),
+        "top_centre_x_mm": _known(seats.top.centre_x_mm),
+        "top_centre_y_mm": _known(seats.top.centre_y_mm),
+        "side_force_N": seats.side_force_N,
+    }
+
+
+def _known(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def nominal(setup: Setup, force: float) -> tuple[float | None, float | None]:
+    """τ = 8 D F/(π d³) and τk = k τ of EN 13906-1, MPa; None of a spring that is no cylinder of one wire."""
+    try:
+        cylinder = Cylinder.of(setup.spring)
+    except InputError:
+        return None, None
+    stress = en13906.stress(force, cylinder.d, cylinder.D)
+    return stress, en13906.stress_correction(cylinder.index) * stress
+
+
+def _safety(setup: Setup, stress: float | None, corrected: float | None) -> float | None:
+    """Allowed over nominal shear stress, whichever of the two is limited."""
+    of = corrected if setup.limits.shear_of == "corrected stress" else stress
+    return setup.limits.shear / abs(of) if setup.limits.shear is not None and of else None

@@ -123,6 +123,14 @@ def case_strength(case: Case, spring: Spring) -> float | None:
     return wire(case.material.wire).strength(wire_diameter(spring))
 
 
+def case_allowed(case: Case, spring: Spring) -> tuple[float | None, str]:
+    """Shear stress allowed at block for a case's wire, MPa, and which stress it limits; None without such a wire."""
+    if isinstance(case.material, str):
+        return None, ""
+    known = wire(case.material.wire)
+    return known.block_stress(wire_diameter(spring)), known.entry.block_stress.of
+
+
 def wire_diameter(spring: Spring) -> float:
     """The single wire diameter of a spring, mm; that of a measured spring may vary by the tolerance of wires, 2 %.
 

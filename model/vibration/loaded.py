@@ -1,0 +1,104 @@
+"""The spring of a results folder at a state: its last equilibrium, brought to a height, travel or force from there."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
+from coilset.model.case.case import Case, check
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.files.opened import open_run
+from coilset.model.run.analysis import Analysis
+from coilset.model.standards.wires.law import case_elastic
+from coilset.model.vibration.modes import Modes, natural_modes
+
+STATES = "end, block, block-3mm, height=30, travel=5 or force=100"
+
+
+def loaded_modes(analysis: Analysis, count: int = 10, glued: bool = False) -> Modes:
+    """Modes of a spring at its last equilibrium; collective.
+
+    Args:
+        analysis: Analysis of a spring.
+        count, glued: as for `natural_modes`.
+
+    Raises:
+        SolveError: too few modes were found.
+    """
+    density = case_elastic(analysis.case, analysis.law).density
+    load = analysis.control.to_height(analysis.control.height)
+    return natural_modes(analysis.system, load, density, count, glued)
+
+
+def after_run(case: Case, at: str = "end", comm: MPI.Comm = MPI.COMM_WORLD) -> Analysis:
+    """The analysis of a case after its load program, gone on to a state; collective.
+
+    Args:
+        case: Case.
+        at: `end`, the end of the load program; or where the spring goes from there: `block`, so many mm short of it, or
+            `height=`, `travel=` (mm, since the start) or `force=` (N).
+        comm: communicator of the ranks that share the spring.
+
+    Raises:
+        InputError: the state has no meaning, or the spring cannot be built.
+        SolveError: no equilibrium was found.
+    """
+    analysis = Analysis(_gone_on(case, at), comm, detailed=False, estimates=False)
+    analysis.run()
+    return analysis
+
+
+def after_results(folder: str | Path, at: str = "end", comm: MPI.Comm = MPI.COMM_WORLD) -> Analysis:
+    """The analysis of a results folder, from its checkpoint gone on to a state; collective.
+
+    Args:
+        folder: results of `coilset solve`, with their checkpoint.
+        at, comm: as for `after_run`.
+
+    Raises:
+        InputError: there are no such results, the run is not complete, or the state has no meaning.
+        SolveError: no equilibrium was found there.
+    """
+    run: Case = check(open_run(folder).case, Path("case"))
+    case = _gone_on(run, at)
+    checkpoint = Checkpoint(folder, case)
+    checkpoint.require()
+    analysis = Analysis(case, comm, detailed=False, estimates=False)
+    saved = checkpoint.load(comm)
+    if saved.position.stage < len(run.loading):
+        raise InputError("the run did not reach its end; continue it by solve --resume first", "", folder)
+    analysis.resume(saved)
+    if at != "end":
+        analysis.run()
+    return analysis
+
+
+def _gone_on(case: Case, at: str) -> Case:
+    """The case with one more phase, to a state."""
+    phase = phase_to(at, case.spring.build())
+    if phase is None:
+        return case
+    data = case.model_dump(mode="json")
+    gone: Case = check(data | {"loading": [*data["loading"], phase]}, Path("case"))
+    return gone
+
+
+def phase_to(at: str, spring: Spring) -> dict[str, Any] | None:
+    """The phase of a load program that goes to a state in words; None for the end of the run.
+
+    Raises:
+        InputError: if the words have no meaning.
+    """
+    if at == "end":
+        return None
+    if at == "block":
+        return {"to": "block"}
+    number = r"([0-9]+\.?[0-9]*(?:e[-+]?[0-9]+)?)"
+    if found := re.fullmatch(rf"block-{number} ?mm", at):
+        return {"to": {"height": spring.block_height + float(found[1])}}
+    if found := re.fullmatch(rf"(height|travel|force)=(-?){number} ?(?:mm|N)?", at):
+        return {"to": {found[1]: float(found[2] + found[3])}}
+    raise InputError(f"'{at}' is no state; give {STATES}", "--at")
