@@ -176,14 +176,20 @@ class Bar:
 
 def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     """Data set, figures and a summary in words; returns the number of failed cases."""
-    from coilset.model.sweep import dataset, parquet  # after the cases: xarray and matplotlib take half a second
+    from coilset.model.figures.png import write_png
+    from coilset.model.sweep import (  # after the cases: xarray and matplotlib take half a second
+        capability,
+        dataset,
+        parquet,
+    )
     from coilset.model.sweep.figures.figures import FILES, draw
+    from coilset.model.sweep.figures.limits import histogram
 
     if options.shard.count > 1:
         console.say(f"journal in {out / options.shard.journal}; when all shards are done, --collect joins them")
         return sum(record["status"] == "failed" for record in read_records(out / options.shard.journal))
     data = dataset.collect(plan, out)
-    clear(out, ("report.html", *FILES))  # of other cases
+    clear(out, ("report.html", "limits.png", *FILES))  # of other cases
     dataset.write(out / "sweep.nc", data)
     if parquet.write(out / "sweep.parquet", plan, out) is None:
         console.warn("sweep.parquet is not written: the package pyarrow is not installed")
@@ -192,6 +198,11 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     files, problems = draw(out, plan, data) if options.pictures else ([], [])
     for line in multifidelity.lines(plan, data):
         console.print(line)
+    capable = capability.capabilities(plan, data)
+    for line in capability.lines(capable):
+        console.print(line)
+    if capable and options.pictures:
+        write_png(out / "limits.png", [histogram(one) for one in capable])
     counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}
     table = Table(show_header=True, box=None, padding=(0, 2))
     for column in ("", "minimum", "mean", "maximum"):

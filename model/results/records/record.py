@@ -18,6 +18,7 @@ from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
 
 if TYPE_CHECKING:  # its records hold those of here
+    from coilset.model.results.limits import Limit
     from coilset.model.results.records.working import Working
 
 
@@ -286,6 +287,7 @@ class Setup:
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
         force_line: ForceLine, or None.
         strength: Strength of the wire in fatigue, or None.
+        bounds: Limits of results.
     """
 
     spring: Spring
@@ -306,6 +308,7 @@ class Setup:
     coiling_diameter: float | None = None
     force_line: ForceLine | None = None
     strength: Strength | None = None
+    bounds: "tuple[Limit, ...]" = ()
 
     @property
     def slender(self) -> bool:
