@@ -46,6 +46,7 @@ log = logging.getLogger("coilset.steps")
 
 FOLLOWED = 8  # elements whose sections are followed with the finer rule
 RINGS, ANGLES = 12, 48  # of the finer rule at least
+FINER_OUTLINE = 3  # times the points, of a section that is no disk
 STILL = 1e-9  # of the free length: a step of less travel is one of force or time
 PEAK = 1.5  # of the difference of a stress that is greatest at one of the sections, whose places the mesh changes
 NOT_KNOWN = Errors(None, None, None)
@@ -139,6 +140,8 @@ class _Watch:
         self.stride = max(1, math.ceil(rod.mesh.topology.index_map(1).size_global / FOLLOWED))
         self.cells = np.flatnonzero(along % self.stride == self.stride // 2)
         finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
+        if rule.outline is not None:
+            finer = rule.outline.rule(FINER_OUTLINE * len(rule))
         self.sections = make_sections(
             section.kind,
             rod.law,

@@ -286,6 +286,7 @@ class Setup:
         warnings: Warnings about the case, before it ran.
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
         force_line: ForceLine, or None.
+        wound_solid: whether coils press on each other before any load.
         strength: Strength of the wire in fatigue, or None.
         bounds: Limits of results.
     """
@@ -307,6 +308,7 @@ class Setup:
     warnings: tuple[Warning, ...] = ()
     coiling_diameter: float | None = None
     force_line: ForceLine | None = None
+    wound_solid: bool = False
     strength: Strength | None = None
     bounds: "tuple[Limit, ...]" = ()
 

@@ -9,7 +9,7 @@ from coilset.model.results.fatigue import fatigue_warnings
 from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
-from coilset.model.results.records.releases import FREE, last_release
+from coilset.model.results.records.releases import FREE, is_turned, last_release
 from coilset.model.results.records.working import working_warnings
 from coilset.model.section import surface
 from coilset.model.standards.working import presetting_warning
@@ -203,6 +203,8 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     asked = setup.limits.accuracy
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     if asked is None or top is None or not top.force_N:
+        return
+    if is_turned(setup, result.steps):  # these errors are those of a force along the axis, here close to zero
         return
     if top.steps_force_error_N is None:
         if not abs(top.force_N) <= FREE * result.rate * setup.spring.free_length:  # also where the rate is not known
