@@ -182,6 +182,7 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
         dataset,
         parquet,
     )
+    from coilset.model.sweep.figures import capability
     from coilset.model.sweep.figures.figures import FILES, draw
     from coilset.model.sweep.figures.limits import histogram
 

@@ -9,7 +9,7 @@ from scipy import stats
 from coilset.model.case import read_case
 from coilset.model.results.limits import Limit, case_limits, judged, limit_warnings
 from coilset.model.standards import en13906, en15800
-from coilset.model.sweep.capability import _capability, _controlled, _plain, lines
+from coilset.model.sweep.figures.capability import _capability, _controlled, _plain, lines
 
 LIMIT = Limit("force_at_37_N", 240.0, 260.0, "given")
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from coilset.model.figures.panels.panel import COLOURS, Panel, axis, upright
-from coilset.model.sweep.capability import Capability
+from coilset.model.sweep.figures.capability import Capability
 
 
 def histogram(found: Capability) -> Panel:
