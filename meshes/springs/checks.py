@@ -24,21 +24,22 @@ class Fault:
     text: str
 
 
-def faults(spring: "Spring") -> Iterator[Fault]:
-    """The reasons why a spring is impossible, one after the other."""
-    for check in (_index, _coils, _block):
+def faults(spring: "Spring", wound_solid: bool = False) -> Iterator[Fault]:
+    """The reasons why a spring is impossible, one after the other; `wound_solid`: coils may touch from the start."""
+    for check in (_index, _coils, *(() if wound_solid else (_block,))):
         yield from check(spring)
 
 
-def refuse(spring: "Spring", place: str | None = None, file: str = "") -> "Spring":
+def refuse(spring: "Spring", place: str | None = None, file: str = "", wound_solid: bool = False) -> "Spring":
     """Raise `InputError` for the first fault; return the spring if there is none.
 
     Args:
         spring: `Spring`.
         place: reported instead of the fault's own, for a spring not defined by drawing entries.
         file: the file that the spring came from.
+        wound_solid: whether it is pulled only, so that its coils may touch from the start.
     """
-    for fault in faults(spring):
+    for fault in faults(spring, wound_solid):
         raise InputError(fault.text, fault.place if place is None else place, file)
     return spring
 
@@ -95,6 +96,5 @@ def _block(spring: "Spring") -> Iterator[Fault]:
         yield Fault(
             "spring",
             f"there is no travel: the free length is {spring.free_length:.4g} mm, the block "
-            f"length {spring.block_height:.4g} mm; wind it longer, an extension spring by a few hundredths of its wire "
-            "a turn",
+            f"length {spring.block_height:.4g} mm; wind it longer, or give the initial_tension of an extension spring",
         )

@@ -21,6 +21,7 @@ from coilset.meshes.springs.wire import WireSpec
 from coilset.model.base.errors import InputError
 from coilset.model.base.schema import Strict
 
+PAST = "made_by", "peening", "initial_tension"  # entries that leave stress in the wire before its first load
 DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wire diameters to add for the mean one
 
 __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
@@ -71,6 +72,15 @@ class SpringSpec(Strict):
     relieved: Annotated[
         Relief | None, Field(description="stress relief of the coiled wire, before peening and before the first load")
     ] = None
+    initial_tension: Annotated[
+        float | None,
+        Unit("N"),
+        Field(
+            gt=0,
+            description="force F0 with which coils wound onto each other press: the wire is twisted elastically "
+            "towards a tighter helix; leave out pitch and free_length",
+        ),
+    ] = None
     peening: Annotated[
         Peening | None, Field(description="shot peening of the wire, before the first load; left out: none")
     ] = None
@@ -89,7 +99,7 @@ class SpringSpec(Strict):
             hint = "wire diameter, mm; a number or a table over the turns"
             problem = "this entry is required; give {hint}"
             raise PydanticCustomError("missing_entry", problem, {"entry": "wire_diameter", "hint": hint})
-        past = next((name for name in ("made_by", "peening") if getattr(self, name) is not None), None)
+        past = next((name for name in PAST if getattr(self, name) is not None), None)
         if self.wire is not None and past:
             raise ValueError(f"{past} is for round wire; leave it out, or wire")
         return self
@@ -107,6 +117,12 @@ class SpringSpec(Strict):
 
     @model_validator(mode="after")
     def _has_length(self) -> Self:
+        if self.initial_tension is not None:
+            if self.pitch is not None or self.free_length is not None or self.end_coils != OPEN:
+                raise ValueError(
+                    "coils with initial_tension are wound onto each other; leave pitch, free_length and end_coils out"
+                )
+            return self
         if self.pitch is None and self.free_length is None:
             raise ValueError("pitch and free_length are both missing; give one of them")
         return self
@@ -135,6 +151,8 @@ class SpringSpec(Strict):
             hand, ends = 1 if self.hand == "right" else -1, bottom_and_top(self.end_coils)
             return Spring(radius, height, wire, hand, *ends, section=section)
 
+        if self.initial_tension is not None:
+            return self._refuse(spring(wire), wound_solid=True)
         if self.pitch is None:
             return self._refuse(self._with_free_length(spring, self.turns - ends_and_transitions))
         built = spring(self._function("pitch"))
@@ -146,10 +164,10 @@ class SpringSpec(Strict):
             )
         return self._refuse(built)
 
-    def _refuse(self, spring: Spring) -> Spring:
+    def _refuse(self, spring: Spring, wound_solid: bool = False) -> Spring:
         """Reject impossible springs; faults of the diameter are reported at the entry that gives it."""
         try:
-            return refuse(spring)
+            return refuse(spring, wound_solid=wound_solid)
         except InputError as error:
             place = error.place.replace("mean_diameter", self.diameter_entry)
             raise InputError(error.problem, place, error.file) from None

@@ -184,7 +184,7 @@ class Contact(ABC):
 
     Attributes:
         name: for labels.
-        end: `bottom` or `top` if its forces are those of a seat, else None.
+        end: the rigid body that presses on the wire: seat `bottom` or `top`, `arbor` or `sleeve`; None between coils.
         needs_rotations: whether it needs `TrialPositions.rotations`.
         points: the wire's points on which it acts, which `Contribution.point` counts; None of a kind without.
         lengths: length of wire assigned to each of these, shape (m,), mm.

@@ -65,6 +65,7 @@ class Analysis:
     Attributes:
         setup: Setup of the records.
         result: Result up to now.
+        threads: of each rank.
         system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
 
@@ -76,7 +77,7 @@ class Analysis:
         threads: int = 1,
         estimates: bool = True,
     ) -> None:
-        self.case, self.comm = case, comm
+        self.case, self.comm, self.threads = case, comm, threads
         self._estimates = estimates and case.steps_error is not None
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)
@@ -150,6 +151,7 @@ class Analysis:
         """
         try:
             if not self.result.snapshots:
+                self._settle_coils()
                 self.recorder.begin(self.initial_rate())
             touched()
             for number in range(self.program.number, len(self.case.loading)):
@@ -168,6 +170,19 @@ class Analysis:
         self.recorder.add_working(working_states(self))
         self.recorder.end(estimated(self) if self._estimates and self.result.steps else without_errors(self.result))
         return self.result
+
+    def _settle_coils(self) -> None:
+        """Let coils that are wound onto each other carry the tension of their wire, without a load on the spring.
+
+        Raises:
+            SolveError: if they find no equilibrium.
+        """
+        if "initial_tension" not in self.case.past:
+            return
+        outcome = self.continuation.attempt(self.control.to_force(0.0))
+        if not outcome.converged:
+            raise SolveError(f"the wound coils find no equilibrium without load: {outcome.reason}")
+        self.program.begin(0)
 
     def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:
         """Let heat flow for the time that the last step took; the step, with what that cost."""

@@ -183,6 +183,7 @@ def build_setup(
         PENETRATION * 2.0 * least_radius,
         case.steps_error,
         *case_allowed(case, spring),
+        creep=law.creep.tests if law.creep else None,
     )
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
     elastic = case_elastic(case, law)
@@ -205,6 +206,7 @@ def build_setup(
         warnings=warnings,
         coiling_diameter=coiling_diameter,
         force_line=build_force_line(case),
+        wound_solid="initial_tension" in case.past,
         strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
     )
 

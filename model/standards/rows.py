@@ -37,8 +37,11 @@ class Row:
 
 def sections(sheet: Sheet) -> list[tuple[str, list[Row]]]:
     """All rows under their headings; headings without rows are omitted."""
+    dimensions = ("Dimensions", list(_dimensions(sheet)))
     if sheet.pulled:
-        return [("Dimensions", list(_dimensions(sheet))), ("Rate", list(_pulled(sheet)))]
+        return [dimensions, ("Extension spring, EN 13906-2", list(_pulled(sheet)))]
+    if sheet.turns_to:
+        return [dimensions, ("Torsion spring, EN 13906-3", list(_turned(sheet)))]
     parts = {
         "Dimensions": _dimensions,
         "Rate, block and buckling": _spring,
@@ -71,7 +74,7 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, "the helix is longer by 1/cos α")
     formula = "ρ A l" if s.wire else "ρ π d² l/4"
     yield Row("mass m", 1e3 * en13906.mass(ρ, s.of_mass, nominal), "g", formula, DERIVED, mass, "as the wire length")
-    if sheet.pulled or s.wire:  # the formula of the growth is for round wire
+    if sheet.pulled or sheet.turns_to or s.wire:  # the formula of the growth is for round wire
         return
     growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
     grown = sheet.found.growth if sheet.found and sheet.was_at_block else None
@@ -98,9 +101,56 @@ def _rate(sheet: Sheet) -> Row:
 
 
 def _pulled(sheet: Sheet) -> Iterator[Row]:
-    """Of a spring that the load program pulls."""
-    yield _rate(sheet)
-    yield Row("all others", None, why="EN 13906-1 and EN 15800 are for compression springs; this one is pulled")
+    """Of a spring that the load program pulls, EN 13906-2: its body is that of a compression spring."""
+    s, k = sheet.spring, en13906.stress_correction(sheet.spring.index)
+    opened = sheet.at_run("open_rate_N_per_mm")
+    if opened is None:
+        yield _rate(sheet)
+    else:
+        yield Row("rate R", sheet.rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, opened, "once the coils are open")
+    if sheet.tension:
+        found, after = sheet.at_run("initial_tension_N"), sheet.at_run("initial_tension_after_N")
+        why = "" if after is None else f"{after:.4g} N after the last release"
+        yield Row("initial tension F0", sheet.tension, "N", "", GIVEN, found, why)
+        τ0 = en13906.stress(sheet.tension, s.d, s.D)
+        yield Row("  stress τ0", τ0, "MPa", "8 D F0/(π d³)", DERIVED)
+    if s.wire:
+        yield Row("all others", None, why="EN 13906-2 is for round wire")
+        return
+    formula = "F0 + R (L − L0)" if sheet.tension else "R (L − L0)"
+    for length in sheet.lengths:
+        force = sheet.tension + sheet.rate * (length - s.length)
+        pull = sheet.found.force_at(length) if sheet.found else None
+        found = None if pull is None else abs(pull)
+        τ = en13906.stress(force, s.d, s.D)
+        yield Row(f"force at {length:.5g} mm", force, "N", formula, DERIVED, found, "first pull")
+        yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED)
+        yield Row("  corrected stress τk", k * τ, "MPa", "k τ", TWO)
+
+
+def _turned(sheet: Sheet) -> Iterator[Row]:
+    """Of a spring that the load program turns, EN 13906-3."""
+    if sheet.spring.wire:
+        yield Row("all", None, why="EN 13906-3 is for round wire")
+        return
+    s, run = sheet.spring, sheet.at_run
+    rate, q = en13906.turn_rate(sheet.elastic.young_modulus, s.d, s.D, s.n), en13906.bending_correction(s.index)
+    why = "with the wire's pitch and curvature"
+    yield Row("rate R", rate, "N mm/°", "E d⁴/(3667 D n)", DERIVED, run("turn_rate_Nmm_per_deg"), why)
+    yield Row("stress factor q", q, "", "(4 w² − w − 1)/(4 w (w − 1))", DERIVED)
+    most = max(sheet.turns_to, key=abs)
+    for turn in sheet.turns_to:
+        torque, largest = rate * abs(turn), turn == most
+        σ, flow = en13906.bending_stress(torque, s.d), "less where the wire yields, more on an arbor"
+        found = run("torque_max_Nmm") if largest else None
+        yield Row(f"torque at {turn:.4g}°", torque, "N mm", "R α", DERIVED, None if found is None else abs(found), flow)
+        yield Row("  bending stress σ", σ, "MPa", "32 M/(π d³)", DERIVED)
+        found = run("max_bending_inside_MPa") if largest else None
+        found = None if found is None else abs(found)
+        yield Row("  at the inside σq", q * σ, "MPa", "q σ", DERIVED, found, "largest at the inside")
+        inner = en13906.turned_diameter(s.D, s.n, turn) - s.d
+        found = run("inner_diameter_min_mm") if largest and turn > 0.0 else None
+        yield Row("  inner diameter", inner, "mm", "D n/(n + α/360°) − d", DERIVED, found, "also off the axis")
 
 
 def _spring(sheet: Sheet) -> Iterator[Row]:
