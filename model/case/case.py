@@ -262,8 +262,8 @@ class Case(Strict):
         Annotated[Literal["none"], Tag("(word)")] | Annotated[Part, Unit("1"), Field(gt=0, lt=1), Tag("(part)")],
         Discriminator(lambda value: "(word)" if value == "none" else "(part)"),
         Field(
-            description="error in force that automatic steps may cause, relative to the maximum force, such as "
-            "0.2 %; none: errors of steps are not estimated, and all phases give their steps"
+            description="allowed error of force and set, and of the force by automatic steps, relative to the maximum "
+            "force, such as 0.2 %; none: errors are not estimated, and all phases give their steps"
         ),
     ] = 0.002
     loading: Annotated[

@@ -15,7 +15,9 @@ from coilset.model.contact.gap import Gaps
 from coilset.model.contact.hold import Groove, Guide, Mount
 from coilset.model.contact.seat import Seat
 
-MODULUS_OF_BEDDING = 40.0  # default bedding is E/40: steel wire penetrates by some thousandths of its diameter at block
+# Default bedding is E/40: steel wire penetrates by some thousandths of its diameter at block. Wire that flattens where
+# it touches wire along a line is stiffer, and costs more (docs/contact.md).
+MODULUS_OF_BEDDING = 40.0
 FREE_TILT_OF_BEDDING = 1e-7  # stiffness of a joint that is free to tilt, relative to that of the coil's bedding, b r³
 ASIDE_OF_DIAMETER = 0.1  # nodes of a gap element may be so far beside each other: they meet 0.5 % of a diameter late
 GUIDES = "arbor", "sleeve"
@@ -48,7 +50,7 @@ def build_contacts(
     Raises:
         InputError: if a seat or a gap element does not fit to the wire or its mesh.
     """
-    bedding = contact.bedding or E / MODULUS_OF_BEDDING
+    bedding = bedding_of(contact, E)
     radius, lengths = 0.5 * spring.wire_diameter(turns), np.diff(spring.arc_length(turns))
     onset = ONSET_OF_DIAMETER * 2.0 * float(radius.min())
     points = CentreLine(turns, radius, lengths).points()
@@ -66,6 +68,11 @@ def build_contacts(
             refuse_overlap(name, diameter, stations, radius)
             contacts.append(Guide(name, points, 0.5 * diameter, bedding, onset))
     return contacts + frictions(contact.friction, contacts, stations, seats_at(spring.free_length))
+
+
+def bedding_of(contact: Any, E: float) -> float:
+    """Stiffness of the bedding, N/mm per mm, that the `contact` section of a case gives, or by default; E in MPa."""
+    return float(contact.bedding or E / MODULUS_OF_BEDDING)
 
 
 def refuse_overlap(name: str, diameter: float, stations: np.ndarray, radius: np.ndarray) -> None:

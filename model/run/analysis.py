@@ -65,6 +65,7 @@ class Analysis:
     Attributes:
         setup: Setup of the records.
         result: Result up to now.
+        threads: of each rank.
         system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
 
@@ -76,7 +77,7 @@ class Analysis:
         threads: int = 1,
         estimates: bool = True,
     ) -> None:
-        self.case, self.comm = case, comm
+        self.case, self.comm, self.threads = case, comm, threads
         self._estimates = estimates and case.steps_error is not None
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)

@@ -60,6 +60,12 @@ class Lines:
             self.say(f"continuing after step {analysis.continuation.number}")
         self.say(f"{HEAD}{'points':>7}  contacts")  # a row fits in 80 columns
 
+    def again(self, analysis: Analysis, finer: str) -> None:
+        """A finer run of the same case begins or continues; `finer` says what is finer."""
+        self.analysis, self._began, self._from = analysis, time.monotonic(), _done(analysis)
+        self.say(f"the estimated error exceeds the accuracy: again with {finer}")
+        self.say(f"{HEAD}{'points':>7}  contacts")
+
     def step(self, step: Step) -> None:
         """A step has been found."""
         cuts = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else ""
@@ -149,6 +155,11 @@ class JsonLines(Lines):
             loading=[phase.label for phase in analysis.case.loading],
             ranks=analysis.comm.size,
         )
+
+    def again(self, analysis: Analysis, finer: str) -> None:
+        """A finer run of the same case."""
+        super().again(analysis, finer)
+        self._put("again", finer=finer, elements=len(analysis.setup.turns) - 1)
 
     def step(self, step: Step) -> None:
         """The step's row of history.csv, the contacts, and the completed part of the load program."""
