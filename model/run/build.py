@@ -183,6 +183,7 @@ def build_setup(
         PENETRATION * 2.0 * least_radius,
         case.steps_error,
         *case_allowed(case, spring),
+        creep=law.creep.tests if law.creep else None,
     )
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
     elastic = case_elastic(case, law)

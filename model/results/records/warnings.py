@@ -20,6 +20,7 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 WALL = 20.0
 WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is asked for
 LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
+ROUNDING = 1e-3  # by which a limit that is given with few digits may be exceeded
 NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
@@ -225,6 +226,30 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
         yield warning
 
 
+def _creep(setup: Setup, result: Result) -> Iterator[Warning]:
+    """Time that passes hotter, at more stress or for longer than in the tests that the constants of creep are from."""
+    tests = setup.limits.creep
+    if tests is None:
+        return
+    before = [0.0, *(step.hours for step in result.steps)]
+    timed = [step for step, hours in zip(result.steps, before, strict=False) if step.hours > hours]
+    if not timed:
+        return
+    shots = [result.snapshots[phase] for phase in {step.phase for step in timed} if phase < len(result.snapshots)]
+    reached = (
+        ("temperature", "K", max(step.temperature_K for step in timed), tests.temperature),
+        ("equivalent stress", "N/mm²", max((_equivalent(shot) for shot in shots), default=0.0), tests.stress),
+        ("time", "h", timed[-1].hours, tests.hours),
+    )
+    for name, unit, value, (least, most) in reached:
+        if value > most * (1.0 + ROUNDING):
+            message = (
+                f"the {name} is {value:.5g} {unit}, but the constants of creep are from tests of {least:g} to {most:g} "
+                f"{unit}: the load loss is extrapolated"
+            )
+            yield Warning("creep", name, message, value, most, unit)
+
+
 MORE = {
     "mesh": "more mesh.elements_per_turn reduce it",
     "section": "more points, mesh.section.radial and angular, reduce it",
@@ -306,6 +331,7 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
 FOUND: tuple[Check, ...] = (
     _strength,
+    _creep,
     _step_error,
     _whole_error,
     _presetting,
