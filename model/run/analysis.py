@@ -13,13 +13,15 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.body.state import State
 from coilset.model.case import Case
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase, drives_at, heads_of
-from coilset.model.case.targets import check_steps, check_targets, check_times, check_working
+from coilset.model.case.targets import check_own_law, check_steps, check_targets, check_times, check_working
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.equilibrium.path.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.path.stability import Stability
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
 from coilset.model.manufacture.initial_state import give_past
+from coilset.model.material.law.law import Law
+from coilset.model.material.law.own import OwnLaw
 from coilset.model.results.files.checkpoint import Saved
 from coilset.model.results.records.record import Result, Snapshot, Step
 from coilset.model.run.balance import imbalance
@@ -58,6 +60,7 @@ class Analysis:
         threads: of each rank, see coilset.model.runtime.threads.
         estimates: estimate the errors of mesh, section and contact at the end of a run, see
             coilset.model.run.companion; never with `accuracy: none`.
+        law: in the place of the case's material; None: that.
 
     Raises:
         InputError: if the spring or the material cannot be built.
@@ -75,11 +78,14 @@ class Analysis:
         detailed: bool = True,
         threads: int = 1,
         estimates: bool = True,
+        law: Law | None = None,
     ) -> None:
         self.case, self.comm = case, comm
         self._estimates = estimates and case.steps_error is not None
         self.spring = spring = case.spring.build()
-        self.law = case_law(case, spring)
+        self.law = case_law(case, spring) if law is None else law
+        if isinstance(self.law, OwnLaw):
+            check_own_law(case, self.law)
         check_steps(case)
         check_targets(case, spring, self.law.G)
         check_working(case, spring, self.law.G)
