@@ -13,6 +13,7 @@ from coilset.meshes.springs.spring import SpringEntry, SpringSpec
 from coilset.meshes.springs.stations import ElementsPerTurn
 from coilset.model.base.entry import Strict, Whole, check_entries
 from coilset.model.base.yaml import read_data
+from coilset.model.case.endurance import EnduranceSpec
 from coilset.model.case.heads import FREEDOMS, ForceLineSpec, HeadsSpec
 from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
@@ -273,6 +274,10 @@ class Case(Strict):
         WorkingSpec | None,
         Field(description="lengths or forces between which the finished spring works; left out: none are reported"),
     ] = None
+    endurance: Annotated[
+        EnduranceSpec | None,
+        Field(description="fatigue strength of the wire, for its life between the outermost working states"),
+    ] = None
     force_line: Annotated[
         ForceLineSpec | None,
         Field(description="planes that the force line crosses, and a damper; left out: seats.csv has no such numbers"),
@@ -327,6 +332,13 @@ class Case(Strict):
             for name in ("sideways", "turn"):
                 if {("bottom", name), ("top", name)} <= loose:
                     raise ValueError(f"loading.{number}: {name} is free at both ends, so the spring floats; hold one")
+        return self
+
+    @model_validator(mode="after")
+    def _endurance_of_cycles(self) -> Self:
+        states = len(self.working.targets) if self.working else 0
+        if self.endurance is not None and states < 2:
+            raise ValueError("endurance is for the cycle between two working states; give working: {lengths: [47, 37]}")
         return self
 
     @model_validator(mode="after")

@@ -153,7 +153,8 @@ def _heatmap(axes: Axes, trace: Trace) -> None:
     x, y = trace["x"], trace["y"]
     ends = (x[0], x[-1], y[0], y[-1])
     limits = {"vmin": trace["zmin"], "vmax": trace["zmax"], "cmap": MAPS[trace["colorscale"]]}
-    shown = axes.imshow(trace["z"], origin="lower", extent=ends, interpolation="bilinear", **limits)
+    aspect = "equal" if np.isclose(x[-1] - x[0], y[-1] - y[0]) else "auto"  # of a place across the wire, or a map
+    shown = axes.imshow(trace["z"], origin="lower", extent=ends, interpolation="bilinear", aspect=aspect, **limits)
     _scale(axes, shown, trace["colorbar"])
 
 

@@ -10,6 +10,7 @@ from coilset.model.figures.panels.along_wire import moments_along_wire, stress_a
 from coilset.model.figures.panels.buckling import buckling_axis, buckling_mode
 from coilset.model.figures.panels.characteristic import characteristic, rate_curve
 from coilset.model.figures.panels.cost import cost, step_error
+from coilset.model.figures.panels.fatigue import fatigue_map, fatigue_view
 from coilset.model.figures.panels.material_curves import material_curve
 from coilset.model.figures.panels.panel import Panel
 from coilset.model.figures.panels.seats import active_turns, contact, contact_length, eccentricity, force_centre
@@ -26,6 +27,7 @@ CHAPTERS: tuple[tuple[str, tuple[Callable[[Run], Panel | None], ...]], ...] = (
     ("The spring", (spring_view,)),
     ("Stress in the wire", (shear_map, normal_map)),
     ("Along the wire", (stress_along_wire, moments_along_wire)),
+    ("Fatigue", (fatigue_map, fatigue_view)),
     ("Seats and coils", (force_centre, eccentricity, contact, contact_length, active_turns)),
     ("Buckling", (buckling_mode, buckling_axis)),
     ("Material", (material_curve,)),

@@ -202,6 +202,7 @@ def build_setup(
         warnings=warnings,
         coiling_diameter=coiling_diameter,
         force_line=build_force_line(case),
+        strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
     )
 
 

@@ -10,7 +10,9 @@ from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case
-from coilset.model.case.phases import Phase
+from coilset.model.case.phases import AnyPhase, Phase, TimePhase
+from coilset.model.equilibrium.path.program import FIRST_TIME
+from coilset.model.material.creep.law import SECONDS
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.lattice import Lattice
 from coilset.model.slice.problem import Effort, SliceProblem
@@ -42,6 +44,9 @@ class SliceStep:
     penetration_mm: float
     pitch_mm: float
     torque_Nmm: float
+    hours: float
+    temperature_K: float
+    load_loss_percent: float | None
 
 
 @dataclass
@@ -94,7 +99,7 @@ class SliceAnalysis:
         lattice, points: Lattice over the section and the Watch of its points; line: Watch across the section at η = 0.
 
     Raises:
-        InputError: if the spring is not cylindrical or does not match the section, or the load program is in time or
+        InputError: if the spring is not cylindrical or does not match the section, or heat flows, or the load program
             goes below block.
     """
 
@@ -117,17 +122,16 @@ class SliceAnalysis:
         self.line = Watch(self.body, np.stack([ξ, np.zeros_like(ξ)], axis=1))
         self.problem = SliceProblem(self.body, _ends_turn(case), SelfContact(self.body))
         self.result = SliceResult()
+        self._held_force: float | None = None  # N, as time began to pass at constant height
 
     def _check_targets(self) -> None:
-        """Reject a load program in time, or with a height below that at which the coils touch."""
-        block, timeless = self.spring.block_height, "the slice does not model time; leave it out, or use coilset solve"
+        """Reject what needs heads or a flow of heat, and heights below that at which the coils touch."""
+        block = self.spring.block_height
         if self.case.heat is not None:
-            raise InputError(timeless, "heat")
+            raise InputError("no heat flows along a slice; leave it out, or use coilset solve", "heat")
         for index, phase in enumerate(self.case.loading):
-            if not isinstance(phase, Phase):
-                raise InputError(timeless, f"loading.{index}")
-            if phase.seconds is not None:
-                raise InputError(timeless, f"loading.{index}.seconds")
+            if isinstance(phase, TimePhase):
+                continue
             if phase.heads:
                 problem = "a slice has no heads; leave bottom and top out, or use coilset solve"
                 raise InputError(problem, f"loading.{index}.to")
@@ -159,7 +163,7 @@ class SliceAnalysis:
         result = self.result
         self._probe()
         result.snapshots.append(self.snapshot("start"))
-        for index, phase in enumerate(self.case.targets):
+        for index, phase in enumerate(self.case.loading):
             try:
                 self._phase(index, phase, report)
             except SolveError:
@@ -169,19 +173,27 @@ class SliceAnalysis:
         result.complete = True
         return result
 
-    def _phase(self, index: int, phase: Phase, report: Callable[[SliceStep], object]) -> None:
-        steps = phase.count(AUTOMATIC)
-        marks = phase.steps if isinstance(phase.steps, list) else np.arange(1, steps + 1) / steps
-        kind, end = phase.goal(self.spring.free_length, self.spring.block_height)
-        begin = self.problem.force if kind == "force" else self.height
-        for k, mark in enumerate(marks, 1):
-            value = end if k == steps else begin + mark * (end - begin)
+    def _phase(self, index: int, phase: AnyPhase, report: Callable[[SliceStep], object]) -> None:
+        steps, relaxes = phase.count(AUTOMATIC), isinstance(phase, TimePhase) and phase.duration.keep == "height"
+        if not relaxes:
+            self._held_force = None
+        elif self._held_force is None:
+            self._held_force = self.problem.force
+        marks = phase.steps if isinstance(phase.steps, list) else list(np.arange(1, steps + 1) / steps)
+        kind, begin, end, times = self._course(phase, marks)
+        cold = float(self.body.clock[1])
+        hot = phase.temperature if isinstance(phase, TimePhase) and phase.temperature is not None else cold
+        for k, (mark, hours) in enumerate(zip(marks, np.diff(times, prepend=0.0), strict=True), 1):
+            value, moment = (
+                end if k == steps else begin + mark * (end - begin),
+                (float(hours), cold + mark * (hot - cold)),
+            )
             if kind == "force":
-                effort = self.problem.go_to_force(value)
-            elif phase.to == "block" and k == steps:
-                effort = self._close(value)
+                effort = self.problem.go_to_force(value, *moment)
+            elif isinstance(phase, Phase) and phase.to == "block" and k == steps:
+                effort = self._close(value, *moment)
             else:
-                effort = self.problem.go_to_rise(self._rise(value))
+                effort = self.problem.go_to_rise(self._rise(value), None, *moment)
             problem, pressure = self.problem, self.problem.pressure
             step = SliceStep(
                 len(self.result.steps) + 1,
@@ -196,25 +208,49 @@ class SliceAnalysis:
                 max(0.0, -pressure.gap),
                 2.0 * np.pi * self.body.rise,
                 float(problem.torque),
+                float(self.body.clock[0]),
+                float(self.body.clock[1]),
+                100.0 * (1.0 - float(problem.force) / self._held_force) if self._held_force else None,
             )
             self.result.steps.append(step)
             report(step)
 
+    def _course(self, phase: AnyPhase, marks: list[float]) -> tuple[str, float, float, np.ndarray]:
+        """What is driven, its values at both ends, and the hours since the phase's start at the ends of its steps.
+
+        Equal steps of a hold are equal ones of the logarithm of time, those of a change of temperature equal times, as
+        in the program of a spring.
+        """
+        parts = np.asarray(marks)
+        if isinstance(phase, TimePhase):
+            kind = phase.duration.keep
+            value = self.problem.force if kind == "force" else self.height
+            if phase.hold:
+                parts = np.append(FIRST_TIME * np.expm1(parts[:-1] * np.log1p(1.0 / FIRST_TIME)), 1.0)
+            return kind, value, value, phase.duration.length * parts
+        kind, end = phase.goal(self.spring.free_length, self.spring.block_height)
+        begin = self.problem.force if kind == "force" else self.height
+        return kind, begin, end, (phase.seconds or 0.0) / SECONDS * parts
+
     def _rise(self, height: float) -> float:
         return self.coil.rise - (self.spring.free_length - height) / (2.0 * np.pi * self.turns)
 
-    def _close(self, height: float) -> Effort:
+    def _close(self, height: float, hours: float, temperature: float) -> Effort:
         """Continue until the coils just touch, slightly above the block height because of the wire's inclination.
 
+        Args:
+            height: at which the spring's drawing is at block, mm.
+            hours: that the first approach takes; temperature: K.
+
         Raises:
-            SolveError: if they do not.
+            SolveError: if they do not touch.
         """
         rise, limit = self._rise(height), TOUCHING * self.wire_diameter
         iterations = cuts = 0
         for _ in range(APPROACHES):
             pressure = self.problem.contact.evaluate()
             rise = max(self._rise(height), self.body.rise - self.body.turn * (pressure.gap - 0.5 * limit) / (2 * np.pi))
-            effort = self.problem.go_to_rise(rise)
+            effort, hours = self.problem.go_to_rise(rise, None, hours, temperature), 0.0
             iterations, cuts = iterations + effort.iterations, cuts + effort.cuts
             if abs(self.problem.pressure.gap - 0.5 * limit) <= 0.5 * limit or rise == self._rise(height):
                 return Effort(iterations, cuts)

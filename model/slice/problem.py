@@ -168,22 +168,24 @@ class SliceProblem:
 
     # ---- steps -----------------------------------------------------------------------------------------------------
 
-    def go_to_rise(self, rise: float, turn: float | None = None, hours: float = 0.0) -> Effort:
+    def go_to_rise(
+        self, rise: float, turn: float | None = None, hours: float = 0.0, temperature: float | None = None
+    ) -> Effort:
         """Find the equilibrium at a rise h̄, mm/rad; a step that does not converge is halved.
 
         Args:
             rise: h̄ at the end of the step.
             turn: λ at the end of the step if the ends are turned; not with free ends.
-            hours: that it takes.
+            hours: that it takes; temperature: at its end, K, by default as it is.
 
         Raises:
             SolveError: if none is found even after `MAX_CUTS` cuts; the last equilibrium is kept.
         """
-        return self._go(lambda: self.body.rise, rise, by_force=False, turn=turn, hours=hours)
+        return self._go(lambda: self.body.rise, rise, False, turn, (hours, temperature))
 
-    def go_to_force(self, force: float) -> Effort:
+    def go_to_force(self, force: float, hours: float = 0.0, temperature: float | None = None) -> Effort:
         """Find the equilibrium under an axial force, compression positive, N; otherwise as `go_to_rise`."""
-        return self._go(lambda: self.force, force, by_force=True)
+        return self._go(lambda: self.force, force, True, None, (hours, temperature))
 
     def probe(self, rise: float, watch: Watch) -> tuple[float, np.ndarray]:
         """Linear response to a small change of the rise from the last equilibrium, which is kept.
@@ -202,10 +204,11 @@ class SliceProblem:
         where: Callable[[], float],
         target: float,
         by_force: bool,
-        turn: float | None = None,
-        hours: float = 0.0,
+        turn: float | None,
+        moment: tuple[float, float | None],
     ) -> Effort:
         begin, done, part, iterations, cuts = where(), 0.0, 1.0, 0, 0
+        (hours, hottest), cold = moment, float(self.body.clock[1])
         turned = 0.0 if turn is None else turn - self.body.turn
         while done < 1.0:
             end = min(done + part, 1.0)
@@ -213,7 +216,7 @@ class SliceProblem:
             direction = np.sign(value - self.force) if by_force else np.sign(self.body.rise - value)
             if direction * self._direction < 0.0:
                 self.body.start_elastic()
-            self.body.pass_time((end - done) * hours)
+            self.body.pass_time((end - done) * hours, cold + end * ((cold if hottest is None else hottest) - cold))
             converged = self._attempt(value, by_force, (end - done) * turned)
             iterations += 1 + self.snes.getIterationNumber()
             if converged and self._sinks_in():
@@ -222,7 +225,7 @@ class SliceProblem:
                 continue
             if converged:
                 self._accept()
-                self._direction, done = direction, end
+                self._direction, done = direction or self._direction, end
                 continue
             self.body.restore()
             part, cuts = 0.5 * part, cuts + 1

@@ -110,8 +110,8 @@ class Slice:
         """History rows of unstressed points, shape (points, n_state)."""
         return np.tile(self._over_time.unstressed(6), (points, 1))
 
-    def pass_time(self, hours: float) -> None:
-        """Let the next step take some hours; commit and restore end this.
+    def pass_time(self, hours: float, temperature: float | None = None) -> None:
+        """Let the next step take some hours, in which the temperature changes linearly; commit and restore end this.
 
         Raises:
             ValueError: if the material does not depend on time.
@@ -120,7 +120,8 @@ class Slice:
         if hours > 0.0:
             if self._over_time.in_time is None:
                 raise ValueError(f"'{self.law.name}' does not depend on time")
-            self._end = self._over_time.in_time.clock(float(self.clock[0]) + hours, float(self.clock[1]), self.clock)
+            end = float(self.clock[1]) if temperature is None else temperature
+            self._end = self._over_time.in_time.clock(float(self.clock[0]) + hours, end, self.clock)
         self.parameters = self._over_time.over({"clock": self.clock}, {"clock": self._end})
 
     @property

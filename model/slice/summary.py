@@ -35,6 +35,7 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "shear_max_MPa": max(at_surface(analysis, shot)["surface_shear_max_MPa"] for shot in result.snapshots),
         "residual_shear_inside_MPa": shear_inside(last) if released else None,
         "shear_inside_max_MPa": max(shear_inside(shot) for shot in result.snapshots),
+        "load_loss_percent": next((x for s in reversed(result.steps) if (x := s.load_loss_percent) is not None), None),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "material": analysis.law.name,

@@ -121,6 +121,8 @@ class Lines:
         self.console.print(table)
         if summary["working"]:
             self.console.print(working_table(summary["working"]))
+        if summary["fatigue"]:
+            self.console.print(fatigue_table(summary["fatigue"]))
         self.console.say(f"  results in {out}{os.sep}", whole=True)
         for warning in summary["warnings"]:
             self.warn(warning["message"])
@@ -235,6 +237,20 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
             *("-" if number is None else f"{number:.0f}" for number in numbers),
             f"{state['shear_inside_turn']:.2f}",
             "-" if state["safety"] is None else f"{state['safety']:.2f}",
+        )
+    return table
+
+
+def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:
+    """Fatigue by each criterion, of summary.json, a row each; stresses in MPa."""
+    table = Table(show_header=True, box=None, padding=(0, 1))
+    for head in ("fatigue by", "amplitude", "endured", "safety", "turn", "angle", "lives"):
+        table.add_column(head, justify="right", no_wrap=True)
+    for one in entries:
+        numbers = (f"{one[name]:.0f}" for name in ("amplitude_MPa", "endured_MPa"))
+        lives = "-" if one["lives"] is None else ", ".join(f"{life:.2g}" for life in one["lives"].values())
+        table.add_row(
+            one["criterion"], *numbers, f"{one['safety']:.2f}", f"{one['turn']:.2f}", f"{one['angle_deg']:.0f}°", lives
         )
     return table
 

@@ -98,3 +98,37 @@ def test_what_no_spring_can_have_is_refused(example, working, place):
     with pytest.raises(InputError) as caught:
         Analysis(check(data), MPI.COMM_SELF)
     assert caught.value.place == place
+
+
+ENDURANCE = {"torsion": 150.0, "bending": 250.0, "mean_stress_sensitivity": 0.3, "slope": 8.0, "source": "a test"}
+
+
+def test_fatigue_is_that_of_the_stress_between_the_outermost_states(example):
+    """At each point σ and τ of the surface alone; the residual stress is in both states and counts once."""
+    made = "{" + ", ".join(f"{name}: {value}" for name, value in ENDURANCE.items()) + "}"
+    analysis = run(example, PRESSED, "working={lengths: [26, 24]}", f"endurance={made}")
+    found = summarise(analysis.setup, analysis.result)
+    entries = {entry["criterion"]: entry for entry in found["fatigue"]}
+    assert set(entries) == {"Haigh", "Smith-Watson-Topper", "Findley", "Dang Van"}
+    # by hand: J₂ = σ²/3 + τ² of a bar's stress
+    low, high = (one.snapshot.surface_state[..., :3] for one in analysis.result.working.states)
+    mean, swing = 0.5 * (high + low), 0.5 * (high - low)
+    measure = [np.sqrt(part[..., 0] ** 2 / 3.0 + part[..., 1] ** 2 + part[..., 2] ** 2) for part in (mean, swing)]
+    beyond = 1.3 / 1.1 * (measure[1] + 0.1 * measure[0])
+    loads = np.where(measure[0] <= measure[1], measure[1] + 0.3 * measure[0], beyond)
+    top = entries["Haigh"]
+    assert analysis.rod.sections.components[:3] == ("s11", "t12", "t13")
+    assert top["amplitude_MPa"] == pytest.approx(loads.max(), rel=0.01)  # a parabola between the points
+    there = np.isclose(analysis.setup.section_turns, top["turn"])  # halves of the spring are alike
+    assert loads[there].max() == pytest.approx(loads.max(), rel=1e-6)
+    assert top["safety"] == pytest.approx(150.0 / top["amplitude_MPa"])
+    named = [warning for warning in found["warnings"] if warning["name"] == "fatigue"]
+    assert len(named) == sum(entry["safety"] < 1.0 for entry in entries.values())
+    for entry in entries.values():
+        assert (entry["lives"] is None) == (entry["safety"] >= 1.0)
+
+
+def test_endurance_needs_two_states(example):
+    data = read_case(example).model_dump(mode="json") | {"endurance": ENDURANCE, "working": {"lengths": [20]}}
+    with pytest.raises(InputError, match="two working states"):
+        check(data)

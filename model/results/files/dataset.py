@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.results.fatigue import usage
 from coilset.model.results.files.netcdf import LabelledData, Variable, write_netcdf
 from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Result, Setup, Snapshot
@@ -56,7 +57,31 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "section_kind": setup.section_kind,
         },
     )
-    return data.merged(way_of_wire(result)).merged(pressure_along_wire(setup, result)).merged(_mode(result))
+    others = (way_of_wire(result), pressure_along_wire(setup, result), _mode(result), working_surface(setup, result))
+    for other in others:
+        data = data.merged(other)
+    return data
+
+
+def working_surface(setup: Setup, result: Result) -> LabelledData:
+    """Stress on the surface at the working states, the wire there, and the fatigue of the surface by each criterion."""
+    shots = [one.snapshot for one in result.working.reached if one.snapshot] if result.working else []
+    if not shots:
+        return LabelledData({}, {})
+    surfaces, places = (np.stack([getattr(shot, name) for shot in shots]) for name in ("surface_state", "x"))
+    of_surface = ("element", "gauss", "angle")
+    found = {
+        "working_surface": Variable(("working", *of_surface, "component"), surfaces, {"units": "MPa"}),
+        "working_position": Variable(("working", "station", "axis"), places, {"units": "mm"}),
+    }
+    coordinates = {"working": _words("working", [shot.name for shot in shots])}
+    criteria = list(usage(setup, result))
+    if criteria:
+        about = "amplitude of fully reversed stress that damages as much, over that endured; by each criterion"
+        used = np.stack([loads / endured for _, loads, endured in criteria])
+        found["fatigue_usage"] = Variable(("criterion", *of_surface), used, {"units": "1", "about": about})
+        coordinates["criterion"] = _words("criterion", [name for name, _, _ in criteria])
+    return LabelledData(found, coordinates)
 
 
 def _mode(result: Result) -> LabelledData:

@@ -27,6 +27,7 @@ DERIVED = (
     "buckling_mode.png",
     "section.png",
     "goodman.png",
+    "fatigue.png",
     "animation.gif",
     "report.html",
 )

@@ -11,6 +11,7 @@ from coilset.meshes.springs.ends import ENDS
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
+from coilset.model.fatigue.strength import Strength
 from coilset.model.results.records.frame import Frame
 from coilset.model.rod.elements import Element
 from coilset.model.section import surface
@@ -284,6 +285,7 @@ class Setup:
         warnings: Warnings about the case, before it ran.
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
         force_line: ForceLine, or None.
+        strength: Strength of the wire in fatigue, or None.
     """
 
     spring: Spring
@@ -303,6 +305,7 @@ class Setup:
     warnings: tuple[Warning, ...] = ()
     coiling_diameter: float | None = None
     force_line: ForceLine | None = None
+    strength: Strength | None = None
 
     @property
     def slender(self) -> bool:

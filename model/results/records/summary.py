@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.errors import InputError
+from coilset.model.results.fatigue import fatigue
 from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates
 from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
@@ -64,6 +65,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         **estimated_errors(result),
         working=working_entries(setup, result),
         working_set_mm=result.working.set if result.working else None,
+        fatigue=fatigue(setup, result),
         load_loss_percent=load_loss(result),
         coiling_diameter_mm=setup.coiling_diameter,
         measured_axis_offset_mm=axis.offset if axis else None,

@@ -134,10 +134,17 @@ class Summary:
     working_set_mm: float | None = entry(
         "mm", "further set by going to the working lengths once; 0 of a spring that stays elastic", of_slice=False
     )
+    fatigue: tuple[dict[str, Any], ...] = entry(
+        "",
+        "by each criterion whose constants `endurance` gives, for the cycle between the outermost working states: the "
+        "greatest fully reversed `amplitude_MPa` on the wire's surface that damages as much, its `turn` and "
+        "`angle_deg` from the inside of the coil, the `endured_MPa`, their ratio `safety`, and `lives`, cycles "
+        "that 10, 50 and 90 % do not survive, `null` where it endures",
+        of_slice=False,
+    )
     load_loss_percent: float | None = entry(
         "%",
         "part of its force that the spring had lost when time last passed at constant height; `null` if none did",
-        of_slice=False,
     )
     coiling_diameter_mm: float | None = entry(
         "mm",

@@ -5,6 +5,7 @@ from itertools import pairwise
 from math import isfinite
 
 from coilset.model.base.warning import Warning
+from coilset.model.results.fatigue import fatigue_warnings
 from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
@@ -288,4 +289,12 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
-FOUND: tuple[Check, ...] = (_strength, _step_error, _whole_error, _presetting, _longer, working_warnings)
+FOUND: tuple[Check, ...] = (
+    _strength,
+    _step_error,
+    _whole_error,
+    _presetting,
+    _longer,
+    working_warnings,
+    fatigue_warnings,
+)

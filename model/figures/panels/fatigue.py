@@ -1,0 +1,84 @@
+"""Where the wire breaks first: the usage of its fatigue strength on its surface, unrolled and on the spring."""
+
+import numpy as np
+
+from coilset.model.figures.panels.panel import Panel, axis
+from coilset.model.figures.panels.spring_view import PER_ELEMENT, scene_of, shown_surface
+from coilset.model.figures.wire import inside, section_turns, surface
+from coilset.model.results.files.opened import Run
+
+NOTE = "1 where the wire just endures: amplitude of fully reversed stress that damages as much, over that endured."
+
+
+def fatigue_map(run: Run) -> Panel | None:
+    """Usage over turn and angle, a criterion to choose; None without `endurance` in the case."""
+    if "fatigue_usage" not in run.data:
+        return None
+    data = run.data["fatigue_usage"].values.mean(axis=2)  # of an element's sections
+    names = [str(name) for name in run.data["criterion"].values]
+    turns = section_turns(run).mean(axis=1)
+    points = data.shape[-1]
+    angle = (run.data["angle"].values - np.degrees(inside(run).angle) + 180.0) % 360.0 - 180.0
+    order = np.argsort(angle)
+    entries = {entry["criterion"]: entry for entry in run.summary["fatigue"]}
+    worst = min(entries.values(), key=lambda entry: entry["safety"])
+    last = sorted(range(len(names)), key=lambda number: -entries[names[number]]["safety"])
+    names, data = [names[number] for number in last], data[last]
+    traces = [
+        {
+            "type": "heatmap",
+            "x": turns,
+            "y": angle[order],
+            "z": data[number][:, order].T,
+            "colorscale": "Viridis",
+            "zmin": 0.0,
+            "zmax": float(max(data.max(), 1.0)),
+            "colorbar": {"title": {"text": "used part"}, "thickness": 14},
+            "meta": {"choice": number},
+            "hovertemplate": "turn %{x:.2f}, %{y:.0f}°<br>%{z:.2f}<extra></extra>",
+        }
+        for number in range(len(names))
+    ]
+    mark = {"size": 10, "symbol": "square", "color": "#d55e00"}
+    place = {"x": [worst["turn"]], "y": [worst["angle_deg"]], "marker": mark, "showlegend": False}
+    traces.append({"type": "scatter", "mode": "markers", **place})
+    finding = (
+        f"The wire breaks first at turn {worst['turn']:.2f}, {worst['angle_deg']:z.0f}° from the inside of the coil; "
+        f"safety {worst['safety']:.2f} by {worst['criterion']}"
+    )
+    return Panel(
+        "fatigue",
+        finding,
+        f"{finding}. Used part of the fatigue strength over the turns and the angle about the wire, {points} points.",
+        traces,
+        {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("angle from the inside of the coil, degrees")},
+        tuple(names),
+        choice="criterion",
+        height=420,
+        note=NOTE,
+    )
+
+
+def fatigue_view(run: Run) -> Panel | None:
+    """The spring at its greatest working force, coloured by the usage of the criterion that is worst."""
+    if "fatigue_usage" not in run.data:
+        return None
+    used, data = run.data["fatigue_usage"].values.mean(axis=2), run.data
+    number = int(np.argmax(used.reshape(len(used), -1).max(axis=1)))
+    name = str(data["criterion"].values[number])
+    heights = np.ptp(data["working_position"].values[..., 2], axis=1)
+    x = data["working_position"].values[int(np.argmin(heights))]
+    rings = PER_ELEMENT * (len(x) - 1) + 1
+    places, shown = surface(data["turn"].values, x, data["wire_radius"].values, used[number], inside(run), rings)
+    trace = {
+        "type": "surface",
+        "cmin": 0.0,
+        "cmax": float(max(shown.max(), 1.0)),
+        "colorscale": "Viridis",
+        "colorbar": {"title": {"text": "used part"}, "thickness": 14, "len": 0.8},
+        "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
+        **shown_surface(places, shown),
+    }
+    finding = f"Used part of the fatigue strength on the spring, by {name}: up to {shown.max():.2f}"
+    corners = np.stack([places.reshape(-1, 3).min(axis=0), places.reshape(-1, 3).max(axis=0)])
+    return Panel("fatigue_spring", finding, f"{finding}.", [trace], scene_of(corners), height=520, note=NOTE)
