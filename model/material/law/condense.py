@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-ITERATIONS, TOLERANCE = 30, 1e-11  # of the other stresses, over the greatest entry of C times the strain, or the stress
+ITERATIONS, TOLERANCE = 30, 1e-12  # of the other stresses, over the greatest stress or modulus times strain
 ALONG, ACROSS = np.array([0, 3, 4]), np.array([1, 2, 5])  # of 11, 22, 33, 12, 13, 23
 
 
@@ -42,29 +42,38 @@ def condense(law3d: Callable[..., bool]) -> Callable[..., bool]:
         old, increment, new, C = np.zeros(6), np.zeros(6), np.empty(6), np.empty((6, 6))
         for i in range(3):
             old[ALONG[i]], increment[ALONG[i]] = stress[i], strain[i]
-        right, block, solved = np.empty((3, 4)), np.empty((3, 3)), False
+        inverse, solved = np.empty((3, 3)), False
         for _iteration in range(ITERATIONS):
             if not inner(old, state, increment, parameters, new, new_state, C):
                 return False
-            size = max(np.abs(new).max(), np.abs(C).max() * np.abs(increment).max())
-            left = 0.0
+            largest = stiffest = left = moved = 0.0
+            for i in range(6):
+                largest, moved = max(largest, abs(new[i])), max(moved, abs(increment[i]))
+                stiffest = max(stiffest, abs(C[i, i]))
             for i in range(3):
-                right[i, 3] = new[ACROSS[i]]
                 left = max(left, abs(new[ACROSS[i]]))
-                for j in range(3):
-                    block[i, j], right[i, j] = C[ACROSS[i], ACROSS[j]], C[ACROSS[i], ALONG[j]]
-            solution = np.linalg.solve(block, right)  # C_ff⁻¹ (C_fe, σ_f)
-            if left <= TOLERANCE * size:
+                for j in range(3):  # of C_ff by its cofactors
+                    a, b, c, d = ACROSS[(j + 1) % 3], ACROSS[(j + 2) % 3], ACROSS[(i + 1) % 3], ACROSS[(i + 2) % 3]
+                    inverse[i, j] = C[a, c] * C[b, d] - C[a, d] * C[b, c]
+            determinant = 0.0
+            for i in range(3):
+                determinant += C[ACROSS[0], ACROSS[i]] * inverse[i, 0]
+            if determinant == 0.0:
+                return False
+            if left <= TOLERANCE * max(largest, stiffest * moved):
                 solved = True
                 break
             for i in range(3):
-                increment[ACROSS[i]] -= solution[i, 3]
+                for j in range(3):
+                    increment[ACROSS[i]] -= inverse[i, j] * new[ACROSS[j]] / determinant
         for i in range(3):
             new_stress[i] = new[ALONG[i]]
             for j in range(3):
                 tangent[i, j] = C[ALONG[i], ALONG[j]]
                 for k in range(3):
-                    tangent[i, j] -= C[ALONG[i], ACROSS[k]] * solution[k, j]
+                    for m in range(3):
+                        part = inverse[k, m] * C[ACROSS[m], ALONG[j]] / determinant
+                        tangent[i, j] -= C[ALONG[i], ACROSS[k]] * part
         return solved
 
     return update
