@@ -39,6 +39,7 @@ from coilset.model.base.errors import CoilsetError, InputError, SolveError, read
 from coilset.model.case.case import Case as CheckedCase
 from coilset.model.case.case import check, read_case
 from coilset.model.case.settings import put
+from coilset.model.equilibrium.path.step_control import StepSizes
 from coilset.model.material import library
 from coilset.model.material.law.condense import condense as _condense
 from coilset.model.material.law.law import Law as _LibraryLaw
@@ -52,7 +53,7 @@ from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
-from coilset.model.run.analysis import Analysis
+from coilset.model.run.analysis import Analysis, FurtherContacts
 from coilset.model.runtime.processes import usable_cores
 from coilset.model.runtime.threads import usual
 from coilset.model.sweep.study import Study as _Study
@@ -339,6 +340,8 @@ def solve(
     threads: int | None = None,
     comm: Any = None,
     law: "Law | None" = None,
+    contacts: FurtherContacts | None = None,
+    steps: type[StepSizes] = StepSizes,
 ) -> Result:
     """Run the load program of a case; collective.
 
@@ -348,6 +351,9 @@ def solve(
         threads: of each rank; default is as `coilset solve`. No number depends on it.
         comm: MPI communicator whose ranks share the spring; default is all.
         law: Law of one's own, in the place of the case's material.
+        contacts: function of the wire's points and the stations' positions that makes further kinds of contact, see
+            examples/own/contact.py.
+        steps: class that decides how long steps are, see examples/own/steps.py.
 
     Raises:
         InputError: the spring cannot be built, or cannot do what its load program requires.
@@ -359,7 +365,7 @@ def solve(
     set 13.26 mm of 35 mm
     """
     comm = MPI.COMM_WORLD if comm is None else comm
-    analysis = Analysis(case._case, comm, threads=threads or usual(comm.size), law=law)
+    analysis = Analysis(case._case, comm, threads=threads or usual(comm.size), law=law, contacts=contacts, steps=steps)
     analysis.run(report)
 
     def write(folder: Path) -> None:
