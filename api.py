@@ -192,7 +192,7 @@ class Law(OwnLaw):
     >>> law = Law(hooke, [206e3, 79.3e3])
     >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 1}, steps: 1}]", "accuracy=none"])
     >>> print(f"{solve(case, law=law).force[0]:.1f} N")
-    0 N
+    39.3 N
     """
 
 
