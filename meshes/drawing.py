@@ -38,7 +38,8 @@ def drawing(spring: Spring, title: str = "") -> Figure:
     below.set_xlabel("turns from the bottom tip")
     wire = below.twinx()
     wire.spines["right"].set_visible(True)
-    _over_turn(wire, spring, spring.wire_diameter, "wire diameter d in mm", "C1", ls="--")
+    name = "diameter" if spring.section is None else "height"
+    _over_turn(wire, spring, spring.wire_diameter, f"wire {name} d in mm", "C1", ls="--")
     figure.text(0.02, 0.955, title, fontsize=12)
     return figure
 
@@ -61,7 +62,7 @@ def _over_turn(
 def _side_view(axes: Axes, spring: Spring) -> None:
     """The spring seen along the y axis, far half turns behind the near ones, its ends cut where they are ground."""
     t = spring.breaks
-    reach = np.max(spring.mean_radius(t) + 0.5 * spring.wire_diameter(t))
+    reach = np.max(spring.mean_radius(t) + 0.5 * spring.width * spring.wire_diameter(t))
     length, size = spring.free_length, max(spring.free_length, 2 * reach)
     axes.set_axis_off()
     axes.set_aspect("equal", adjustable="box", anchor="C")
@@ -105,9 +106,9 @@ def _dimensions(axes: Axes, spring: Spring, reach: float, size: float) -> None:
         axes.plot([-reach - 0.05 * size, reach + 0.2 * size], [level, level], color=DIMENSION, lw=0.7, zorder=0)
     _dimension(axes, (reach + 0.15 * size, 0), (reach + 0.15 * size, length), f"L0 = {length:.4g} mm")
     t = spring.breaks
-    outer = 2 * spring.mean_radius(t) + spring.wire_diameter(t)
+    outer = 2 * spring.mean_radius(t) + spring.width * spring.wire_diameter(t)
     for turn, level in ((0.0, -0.09 * size), (last, length + 0.09 * size)):
-        d, radius = spring.wire_diameter(turn), spring.mean_radius(turn)
+        d, radius = spring.width * spring.wire_diameter(turn), spring.mean_radius(turn)
         _dimension(axes, (-radius - d / 2, level), (radius + d / 2, level), f"De = {2 * radius + d:.4g} mm")
     widest = t[np.argmax(outer)]
     if outer.max() > 1.001 * max(outer[0], outer[-1]):

@@ -96,29 +96,27 @@ def section_mesh(
     return SectionMesh(mesh, facets, degree, area, size, extent, _middle(along))
 
 
-def boundary(outline: Outline, along: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gauss's points on an outline, so many on each of its pieces, in the order of these.
+def drawn_pieces(outline: Outline, knots: int) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Points at equal steps of the parameter t, 0 … 1, of each piece of an outline, in the order of these.
 
     Returns:
-        Points b(t), shape (n, 2), mm; their derivatives b′ by the parameter of their piece; weights dt, shape (n,).
+        Points b(t) and their derivatives b′(t) of each piece, shape (knots, 2), mm.
     """
-    x, w = np.polynomial.legendre.leggauss(along)
     gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
     try:
         with _fillable():
             gmsh.model.add("outline")
             curves = outline.draw()
             gmsh.model.occ.synchronize()
-            points, slopes, weights = [], [], []
+            pieces = []
             for curve in curves:
                 (start,), (end,) = gmsh.model.getParametrizationBounds(1, curve)
-                t = start + 0.5 * (end - start) * (x + 1.0)
-                points.append(gmsh.model.getValue(1, curve, t).reshape(-1, 3)[:, :2])
-                slopes.append(gmsh.model.getDerivative(1, curve, t).reshape(-1, 3)[:, :2])
-                weights.append(0.5 * (end - start) * w)
+                t = np.linspace(start, end, knots)
+                points, slopes = gmsh.model.getValue(1, curve, t), gmsh.model.getDerivative(1, curve, t)
+                pieces.append((points.reshape(-1, 3)[:, :2], (end - start) * slopes.reshape(-1, 3)[:, :2]))
     finally:
         gmsh.finalize()
-    return np.concatenate(points), np.concatenate(slopes), np.concatenate(weights)
+    return pieces
 
 
 @contextlib.contextmanager

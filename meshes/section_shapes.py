@@ -50,6 +50,73 @@ class Oval:
         return [gmsh.model.occ.addEllipse(0, 0, 0, max(a, b), min(a, b), zAxis=[0, 0, 1], xAxis=along)]
 
 
+@dataclass(frozen=True)
+class Tube:
+    """A round tube of two diameters, mm."""
+
+    outer: float
+    inner: float
+
+    def __post_init__(self) -> None:
+        _positive(outer=self.outer, inner=self.inner)
+        if not self.inner < self.outer:
+            raise InputError(f"{self.inner:g} mm is no inner diameter of a tube of {self.outer:g} mm", "section.inner")
+
+    @property
+    def hole(self) -> float:
+        """Inner over outer diameter."""
+        return self.inner / self.outer
+
+    def draw(self) -> list[int]:
+        """See `Outline`: its outer circle."""
+        return Oval(self.outer, self.outer).draw()
+
+
+@dataclass(frozen=True)
+class Egg:
+    """Two circles, one towards the coil's axis and one away from it, and their two outer common tangents (Fuchs).
+
+    Attributes:
+        inside, outside: radii of the circles at the inside and at the outside of the coil, mm.
+        distance: of their centres, mm.
+    """
+
+    inside: float
+    outside: float
+    distance: float
+
+    def __post_init__(self) -> None:
+        _positive(inside=self.inside, outside=self.outside, distance=self.distance)
+        if not self.distance > abs(self.inside - self.outside):
+            raise InputError(
+                f"{self.distance:g} mm is too short: one circle is inside the other, which makes round wire",
+                "section.distance",
+            )
+
+    def draw(self) -> list[int]:
+        """See `Outline`."""
+        occ, i, o, e = gmsh.model.occ, self.inside, self.outside, self.distance
+        middle = 0.5 * (e + o - i)  # ξ from the inner circle's centre to the middle of the width
+        cos = (i - o) / e  # of the angle from ξ at which the tangents touch: r(φ) = ξ cos φ + r has one value there
+        sin = math.sqrt(1.0 - cos**2)
+
+        def point(centre: float, radius: float, side: float) -> int:
+            return occ.addPoint(centre - middle + radius * cos, side * radius * sin, 0)
+
+        inner, outer = occ.addPoint(-middle, 0, 0), occ.addPoint(e - middle, 0, 0)
+        ends = occ.addPoint(e - middle + o, 0, 0), occ.addPoint(-middle - i, 0, 0)
+        a, b, c, d = point(e, o, -1.0), point(e, o, 1.0), point(0.0, i, 1.0), point(0.0, i, -1.0)
+        arc, line = occ.addCircleArc, occ.addLine
+        return [
+            arc(a, outer, ends[0]),
+            arc(ends[0], outer, b),
+            line(b, c),
+            arc(c, inner, ends[1]),
+            arc(ends[1], inner, d),
+            line(d, a),
+        ]
+
+
 def round_wire(diameter: float) -> Oval:
     """The section of a round wire of the given diameter, mm."""
     _positive(diameter=diameter)
@@ -204,8 +271,12 @@ WORDS: dict[str, tuple[Callable[..., Outline], int, int]] = {
     "oval": (Oval, 2, 2),
     "rectangle": (rectangle, 2, 3),
     "trapezoid": (Trapezoid, 3, 4),
+    "egg": (Egg, 3, 3),
 }
-FORMS = "round:d, oval:width:height, rectangle:width:height[:corner], trapezoid:width:inside:outside[:corner] in mm"
+FORMS = (
+    "round:d, oval:width:height, rectangle:width:height[:corner], trapezoid:width:inside:outside[:corner], "
+    "egg:inside:outside:distance in mm"
+)
 
 
 def parse(text: str) -> Outline:

@@ -5,9 +5,11 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
+from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs.geometry import Spring
 
 STATIONS_PER_TURN = 64
+CORNERS = 96  # of the outline of a wire that is not round
 
 
 def tube(spring: Spring, sides: int = 32) -> pv.PolyData:
@@ -18,9 +20,35 @@ def tube(spring: Spring, sides: int = 32) -> pv.PolyData:
         sides: number of corners of the cross-section.
     """
     turns = np.linspace(0.0, spring.turns, int(np.ceil(STATIONS_PER_TURN * spring.turns)) + 1)
+    if spring.section is not None:
+        return _cut(_outlined(spring, spring.section, turns), spring)
     line = pv.PolyData(spring.centre_line(turns), lines=[len(turns), *range(len(turns))])
     line["turn"], line["radius"] = turns, 0.5 * spring.wire_diameter(turns)
-    surface = line.tube(scalars="radius", absolute=True, n_sides=sides, capping=True)
+    return _cut(line.tube(scalars="radius", absolute=True, n_sides=sides, capping=True), spring)
+
+
+def _outlined(spring: Spring, section: Boundary, turns: np.ndarray) -> pv.PolyData:
+    """The surface of a wire that is not round: quadrilaterals between its outlines, and both end faces."""
+    outwards = spring.centre_line(turns) * [1.0, 1.0, 0.0]
+    along = spring.tangent(turns)
+    outwards -= np.sum(outwards * along, axis=1)[:, None] * along
+    outwards /= np.linalg.norm(outwards, axis=1)[:, None]
+    upwards = np.cross(outwards, along) * spring.hand
+    corners, radius = section.points(CORNERS), 0.5 * spring.wire_diameter(turns)
+    y, z = corners[..., None].swapaxes(0, 1)
+    ring = radius[:, None, None] * (z * upwards[:, None] - y * outwards[:, None])
+    n, m = len(turns), len(corners)
+    number = np.arange(n * m).reshape(n, m)
+    beside = np.roll(number, -1, axis=1)
+    sides = np.stack([number[:-1], beside[:-1], beside[1:], number[1:]], axis=-1).reshape(-1, 4)
+    faces = np.concatenate([np.insert(sides, 0, 4, axis=1).ravel(), [m, *number[0][::-1]], [m, *number[-1]]])
+    surface = pv.PolyData((spring.centre_line(turns)[:, None] + ring).reshape(-1, 3), faces=faces)
+    surface["turn"] = np.repeat(turns, m)
+    return surface
+
+
+def _cut(surface: pv.PolyData, spring: Spring) -> pv.PolyData:
+    """What the grinding of the ends leaves of a surface."""
     for end, normal, level in ((spring.bottom, (0, 0, 1), 0.0), (spring.top, (0, 0, -1), spring.free_length)):
         if end.tip_thickness < 1:
             surface = surface.triangulate().clean().clip_closed_surface(normal=normal, origin=(0, 0, level))

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import coilset.open
@@ -20,6 +21,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.results.diffraction import DIRECTIONS
 
+DRAWN = 121  # points of a phase's characteristic
 CASE, MEASURED, COLUMNS = "case.yaml", "measured.csv", "quantity, value, error"
 ERRORS = {
     "force_N": "estimated_force_error_N",
@@ -35,7 +37,8 @@ class Compared:
     """One measured number beside the computed one, in the same unit; the errors are ±.
 
     Attributes:
-        computed_error: of the steps, as the run estimates it; NaN where it does not.
+        computed_error: as the run estimates it; NaN where it does not.
+        travel: of a force, mm; NaN of anything else.
     """
 
     quantity: str
@@ -43,6 +46,7 @@ class Compared:
     error: float
     computed: float
     computed_error: float
+    travel: float = float("nan")
 
     @property
     def met(self) -> bool:
@@ -56,7 +60,22 @@ class Compared:
         return self.measured / self.computed if self.computed else float("nan")
 
 
-def compare(folder: str | Path, results: str | Path, overwrite: bool = False) -> list[Compared]:
+@dataclass(frozen=True)
+class Comparison:
+    """All numbers of a folder beside those of the run.
+
+    Attributes:
+        rows: the numbers.
+        characteristic: ascending travel (mm) and force (N) of each phase, between its steps too, shape (2, DRAWN).
+        force_error: of the maximum force by all causes, N; NaN where the run does not estimate it.
+    """
+
+    rows: list[Compared]
+    characteristic: list[np.ndarray]
+    force_error: float
+
+
+def compare(folder: str | Path, results: str | Path, overwrite: bool = False) -> Comparison:
     """Run the case of a folder and compare it with what was measured.
 
     Args:
@@ -72,7 +91,24 @@ def compare(folder: str | Path, results: str | Path, overwrite: bool = False) ->
     table = _checked(read_columns(folder / MEASURED))
     result = solve(Case.read(folder / CASE))
     result.save(results, overwrite)
-    return [_compared(table, row, line, result, Path(results)) for line, row in table.rows]
+    rows = [_compared(table, row, line, result, Path(results)) for line, row in table.rows]
+    return Comparison(rows, _characteristic(result), _error(result, "force_max_N"))
+
+
+def _characteristic(result: Result) -> list[np.ndarray]:
+    travel, of_step = np.append(0.0, result.travel), result.data["phase"].to_numpy()
+    found = []
+    for phase in np.unique(of_step).tolist():
+        rows = np.flatnonzero(of_step == phase)
+        reached = travel[rows[0] : rows[-1] + 2]
+        way = np.linspace(reached.min(), reached.max(), DRAWN)
+        found.append(np.array([way, [result.force_at(one, phase) for one in way.tolist()]]))
+    return found
+
+
+def _error(result: Result, quantity: str) -> float:
+    found = result.summary.get(ERRORS.get(quantity, ""))
+    return abs(float(found)) if isinstance(found, int | float) else float("nan")
 
 
 def _checked(table: Columns) -> Columns:
@@ -109,25 +145,59 @@ def _compared(table: Columns, row: dict[str, str], line: int, result: Result, fo
             known = "a number of summary.json, force_N, or stress_ with along, around, +45° or -45° and _MPa"
             raise InputError(f"'{quantity}' is none that this run has; give {known}", f"{place}", table.path)
         computed = float(value)
-    told = result.summary.get(ERRORS.get(quantity, ""))
-    error = abs(float(told)) if isinstance(told, int | float) else float("nan")
-    return Compared(name, given("value"), given("error"), computed, error)
+    travel = given("travel_mm") if quantity == "force_N" else float("nan")
+    return Compared(name, given("value"), given("error"), computed, _error(result, quantity), travel)
 
 
-def figure(rows: list[Compared], name: str) -> Figure:
-    """Measured over computed of all numbers, with the measured error as a bar and the computed one as a band."""
+def figure(found: Comparison, name: str) -> Figure:
+    """Measured over computed of all numbers, with the measured error as a bar and the computed one as a band; where
+    forces at travels were measured, these over the computed characteristic, too."""
+    rows, forces = found.rows, [row for row in found.rows if not np.isnan(row.travel)]
     with mpl.rc_context(STYLE):
-        sheet = Figure(figsize=(7.0, 1.2 + 0.34 * len(rows)), layout="constrained")
-        axes = sheet.add_subplot()
-        for k, row in enumerate(rows):
-            size = abs(row.computed) or float("nan")
-            if not np.isnan(row.computed_error):
-                axes.barh(k, 2.0 * row.computed_error / size, 0.7, 1.0 - row.computed_error / size, color="0.85")
-            axes.errorbar(row.ratio, k, xerr=row.error / size, fmt="o", ms=4, color="C0" if row.met else "C3")
-        axes.axvline(1.0, color="k", lw=0.8)
-        axes.set_yticks(range(len(rows)), [row.quantity for row in rows])
-        axes.invert_yaxis()
-        met = sum(row.met for row in rows)
-        axes.set(xlabel="measured over computed", title=f"{name}: {met} of {len(rows)} numbers met")
-        axes.grid(lw=0.3, axis="x")
+        ratios = 1.2 + 0.34 * len(rows)
+        sheet = Figure(figsize=(7.0, ratios + 3.8 * bool(forces)), layout="constrained")
+        panels = sheet.subplots(2, 1, height_ratios=[ratios, 3.8]) if forces else [sheet.add_subplot()]
+        _draw_ratios(panels[0], rows, name)
+        if forces:
+            _draw_forces(panels[1], found, forces)
     return sheet
+
+
+def _draw_ratios(axes: Axes, rows: list[Compared], name: str) -> None:
+    for k, row in enumerate(rows):
+        size = abs(row.computed) or float("nan")
+        if not np.isnan(row.computed_error):
+            axes.barh(k, 2.0 * row.computed_error / size, 0.7, 1.0 - row.computed_error / size, color="0.85")
+        axes.errorbar(row.ratio, k, xerr=row.error / size, fmt="o", ms=4, color="C0" if row.met else "C3")
+    axes.axvline(1.0, color="k", lw=0.8)
+    axes.set_yticks(range(len(rows)), [row.quantity for row in rows])
+    axes.invert_yaxis()
+    met = sum(row.met for row in rows)
+    axes.set(xlabel="measured over computed", title=f"{name}: {met} of {len(rows)} numbers met")
+    axes.grid(lw=0.3, axis="x")
+
+
+def _draw_forces(axes: Axes, found: Comparison, forces: list[Compared]) -> None:
+    for k, (travel, force) in enumerate(found.characteristic):
+        label = "computed, with its estimated error" if not k else None
+        axes.plot(travel, force, "-", color=f"C{k % 2}", lw=1.2, label=label)
+        if not np.isnan(found.force_error):
+            low, high = force - found.force_error, force + found.force_error
+            axes.fill_between(travel, low, high, color=f"C{k % 2}", alpha=0.2, lw=0)
+    for met, colour in ((True, "k"), (False, "C3")):
+        here = [row for row in forces if row.met is met]
+        if here:
+            axes.errorbar(
+                [row.travel for row in here],
+                [row.measured for row in here],
+                yerr=[row.error for row in here],
+                fmt="o",
+                ms=4,
+                mfc="none",
+                capsize=2,
+                color=colour,
+                label="measured" if met else "measured, not met",
+            )
+    axes.set(xlabel="travel in mm", ylabel="force in N")
+    axes.legend()
+    axes.grid(lw=0.3)

@@ -146,7 +146,9 @@ for deflection in way:
 theirs = np.array(theirs)
 elastic = 3.0 * E * np.pi * radius**4 / 4.0 / length**3 * way[11]
 worst = np.abs(found - theirs).max()
-print(f"{found[11]:.3f} N at {way[11]:g} mm, coilset {theirs[11]:.3f} N; {elastic:.1f} N without yield; {worst:.1e} N off")
+print(
+    f"{found[11]:.3f} N at {way[11]:g} mm, coilset {theirs[11]:.3f} N; {elastic:.1f} N without yield; {worst:.1e} N off"
+)
 assert found[11] < 0.9 * elastic
 assert worst < 3e-4 * found[11]
 

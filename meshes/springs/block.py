@@ -1,8 +1,9 @@
 """The height at which a spring is solid, from its geometry: coils that lie on each other, pass each other, or stack.
 
 Two wires of diameters d₁, d₂ that one meridian cuts at radii r₁, r₂ touch where the upper one stands
-s = √(d² − (r₂ − r₁)²) above the lower one, d = ½ (d₁ + d₂); where |r₂ − r₁| ≥ d they pass each other. The block height
-is the greater of two:
+s = √(d² − (r₂ − r₁)²) above the lower one, d = ½ (d₁ + d₂); where |r₂ − r₁| ≥ d they pass each other. Of wire that is
+not round, s is the height of the difference of its section with itself (`Boundary.touching`). The block height is the
+greater of two:
 
 - **each coil on the next**: from the turn t to t + 1 the wire rises by s(t). A pitch p with ∫ p = s over each turn is
   s(t − ½) at t, to second order; over the first and the last half turn it is constant. So n turns rise by
@@ -36,13 +37,13 @@ def _each_on_the_next(spring: "Spring") -> float:
     n = spring.turns
     if n <= 1.0:  # no coil has a next one; the pitch of a coil that goes on
         mean = 0.5 * (spring.wire(0.0) + spring.wire(n))
-        return float(n * touching_pitch(mean, (spring.radius(n) - spring.radius(0.0)) / n) + ends)
+        return float(n * touching_pitch(mean, (spring.radius(n) - spring.radius(0.0)) / n, spring.section) + ends)
 
     def rise(turn: np.ndarray | float) -> np.ndarray:
         """From each turn t ≤ n − 1 to the next where the two touch, mm."""
         t = np.asarray(turn, dtype=float)
         wire = 0.5 * (spring.wire(t) + spring.wire(t + 1.0))
-        return touching_pitch(wire, spring.radius(t + 1.0) - spring.radius(t))
+        return touching_pitch(wire, spring.radius(t + 1.0) - spring.radius(t), spring.section)
 
     marks = np.unique(np.concatenate([spring.breaks, spring.breaks - 1.0]))  # of r and d at t, and at t + 1
     inside = marks[(marks > 0.0) & (marks < n - 1.0)]
@@ -59,7 +60,7 @@ def _highest_stack(spring: "Spring") -> float:
     r, d = spring.mean_radius(t), spring.wire_diameter(t)
     level = spring.seat_distance(t, "bottom")
     for i in range(1, len(t)):
-        rise = touching_pitch(0.5 * (d[:i] + d[i]), r[i] - r[:i])
+        rise = touching_pitch(0.5 * (d[:i] + d[i]), r[i] - r[:i], spring.section)
         resting = np.where(rise > 0.0, level[:i] + rise, -np.inf)
         level[i] = np.maximum(level[i], resting.max(axis=0))
     return float(np.where(there, level + spring.seat_distance(t, "top"), 0.0).max())

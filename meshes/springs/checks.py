@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coilset.meshes.springs.ends import touching_pitch
 from coilset.model.base.errors import InputError
 
 if TYPE_CHECKING:
@@ -23,21 +24,22 @@ class Fault:
     text: str
 
 
-def faults(spring: "Spring") -> Iterator[Fault]:
-    """The reasons why a spring is impossible, one after the other."""
-    for check in (_index, _coils, _block):
+def faults(spring: "Spring", wound_solid: bool = False) -> Iterator[Fault]:
+    """The reasons why a spring is impossible, one after the other; `wound_solid`: coils may touch from the start."""
+    for check in (_index, _coils, *(() if wound_solid else (_block,))):
         yield from check(spring)
 
 
-def refuse(spring: "Spring", place: str | None = None, file: str = "") -> "Spring":
+def refuse(spring: "Spring", place: str | None = None, file: str = "", wound_solid: bool = False) -> "Spring":
     """Raise `InputError` for the first fault; return the spring if there is none.
 
     Args:
         spring: `Spring`.
         place: reported instead of the fault's own, for a spring not defined by drawing entries.
         file: the file that the spring came from.
+        wound_solid: whether it is pulled only, so that its coils may touch from the start.
     """
-    for fault in faults(spring):
+    for fault in faults(spring, wound_solid):
         raise InputError(fault.text, fault.place if place is None else place, file)
     return spring
 
@@ -47,19 +49,24 @@ def coil_distances(spring: "Spring") -> tuple[np.ndarray, np.ndarray, np.ndarray
 
     Returns:
         Turns t, the distances between the turns t and t + 1, and the sums of the wire's radii there, mm; each of shape
-        (n,), empty if the spring has less than one turn.
+        (n,), empty if the spring has less than one turn. Of wire that is not round, the distances along the axis, which
+        are infinite where coils pass each other, and those at which the coils touch.
     """
     low = spring.breaks[spring.breaks <= spring.turns - 1]
     if spring.turns > 1:
         low = np.append(low, spring.turns - 1)
     up = low + 1
-    distance = np.hypot(spring.mean_radius(up) - spring.mean_radius(low), spring.height(up) - spring.height(low))
-    return low, distance, 0.5 * (spring.wire_diameter(up) + spring.wire_diameter(low))
+    aside, rise = spring.mean_radius(up) - spring.mean_radius(low), spring.height(up) - spring.height(low)
+    wire = 0.5 * (spring.wire_diameter(up) + spring.wire_diameter(low))
+    if spring.section is None:
+        return low, np.hypot(aside, rise), wire
+    touching = touching_pitch(wire, aside, spring.section)
+    return low, np.where(touching > 0.0, rise, np.inf), np.where(touching > 0.0, touching, wire)
 
 
 def _index(spring: "Spring") -> Iterator[Fault]:
     t = spring.breaks
-    index = 2 * spring.mean_radius(t) / spring.wire_diameter(t)
+    index = 2 * spring.mean_radius(t) / (spring.wire_diameter(t) * max(1.0, spring.width))
     i = np.argmin(index)
     if index[i] < INDEX_LEAST:
         yield Fault(
@@ -89,6 +96,5 @@ def _block(spring: "Spring") -> Iterator[Fault]:
         yield Fault(
             "spring",
             f"there is no travel: the free length is {spring.free_length:.4g} mm, the block "
-            f"length {spring.block_height:.4g} mm; wind it longer, an extension spring by a few hundredths of its wire "
-            "a turn",
+            f"length {spring.block_height:.4g} mm; wind it longer, or give the initial_tension of an extension spring",
         )

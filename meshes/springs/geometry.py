@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.axis import Axis
 from coilset.meshes.springs.block import block_height
@@ -20,6 +21,8 @@ STRAIGHT = 1e-9  # |c′ × c″| over |c′|² below which a wire has no normal
 class Spring:
     """A wire wound round the z axis: mean radius, height and wire diameter as functions of the turn.
 
+    The diameter of a wire that is not round is its height along the spring.
+
     The turn t counts from the bottom end, and the seats are the planes z = 0 and z = free length. The centre line is
     `c(t) = (r cos θ, r sin θ, z)` with `θ = phase + hand 2π t`. All lengths are in mm.
 
@@ -32,6 +35,8 @@ class Spring:
         top: `EndCoils` at the last turn.
         phase: polar angle of the first point, rad.
         measured_axis: fitted axis of a measured spring in the coordinates of its file; None of a drawn one.
+        section: boundary of a wire that is not round, in half its height, y towards the coil's axis and z upwards;
+            None of a round one.
     """
 
     radius: PiecewisePolynomial
@@ -42,6 +47,7 @@ class Spring:
     top: EndCoils = OPEN
     phase: float = 0.0
     measured_axis: Axis | None = None
+    section: Boundary | None = None
 
     @property
     def turns(self) -> float:
@@ -166,8 +172,14 @@ class Spring:
     @property
     def volume(self) -> float:
         """Volume of the wire before grinding, mm³."""
+        share = 1.0 if self.section is None else self.section.area / np.pi
         parts = functions.integral(lambda t: 0.25 * np.pi * self.wire(t) ** 2 * self.speed(t), self.breaks)
-        return float(parts.sum())
+        return float(parts.sum()) * share
+
+    @property
+    def width(self) -> float:
+        """Greatest width of the wire across the coil's axis over its diameter or height; 1 of round wire."""
+        return 1.0 if self.section is None else 0.5 * float(self.section.high[0] - self.section.low[0])
 
     @property
     def free_length(self) -> float:

@@ -6,7 +6,9 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic_core import PydanticCustomError
 
+from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.checks import refuse
 from coilset.meshes.springs.ends import OPEN, Ends, bottom_and_top, pitch_with_ends, touching_pitch
@@ -15,9 +17,11 @@ from coilset.meshes.springs.measured import MeasuredSpec
 from coilset.meshes.springs.past import Peening, Relief
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.shapes import DiameterProfile, Length, Profile, profile_function
+from coilset.meshes.springs.wire import WireSpec
 from coilset.model.base.errors import InputError
 from coilset.model.base.schema import Strict
 
+PAST = "made_by", "peening", "initial_tension"  # entries that leave stress in the wire before its first load
 DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wire diameters to add for the mean one
 
 __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
@@ -26,7 +30,14 @@ __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
 class SpringSpec(Strict):
     """A spring as on a drawing: wire, coil diameter and pitch over the turns, hand and ends; lengths in mm."""
 
-    wire_diameter: Annotated[Profile, Field(description="wire diameter, mm; a number or a table over the turns")]
+    wire_diameter: Annotated[
+        Profile | None,
+        Field(
+            description="wire diameter, mm; a number or a table over the turns; beside `wire` its height, to which the "
+            "section is scaled"
+        ),
+    ] = None
+    wire: Annotated[WireSpec | None, Field(description="section of a wire that is not round")] = None
     mean_diameter: Annotated[
         DiameterProfile | None, Field(description="mean coil diameter D, mm; a number, a table or a shape")
     ] = None
@@ -61,6 +72,15 @@ class SpringSpec(Strict):
     relieved: Annotated[
         Relief | None, Field(description="stress relief of the coiled wire, before peening and before the first load")
     ] = None
+    initial_tension: Annotated[
+        float | None,
+        Unit("N"),
+        Field(
+            gt=0,
+            description="force F0 with which coils wound onto each other press: the wire is twisted elastically "
+            "towards a tighter helix; leave out pitch and free_length",
+        ),
+    ] = None
     peening: Annotated[
         Peening | None, Field(description="shot peening of the wire, before the first load; left out: none")
     ] = None
@@ -71,6 +91,17 @@ class SpringSpec(Strict):
         if len(given) != 1:
             found = f"{', '.join(given)} are given" if given else "the coil diameter is missing"
             raise ValueError(f"{found}; give one of mean_diameter, outer_diameter (De) and inner_diameter (Di)")
+        return self
+
+    @model_validator(mode="after")
+    def _has_wire(self) -> Self:
+        if self.wire_diameter is None and self.wire is None:
+            hint = "wire diameter, mm; a number or a table over the turns"
+            problem = "this entry is required; give {hint}"
+            raise PydanticCustomError("missing_entry", problem, {"entry": "wire_diameter", "hint": hint})
+        past = next((name for name in PAST if getattr(self, name) is not None), None)
+        if self.wire is not None and past:
+            raise ValueError(f"{past} is for round wire; leave it out, or wire")
         return self
 
     @model_validator(mode="after")
@@ -86,6 +117,12 @@ class SpringSpec(Strict):
 
     @model_validator(mode="after")
     def _has_length(self) -> Self:
+        if self.initial_tension is not None:
+            if self.pitch is not None or self.free_length is not None or self.end_coils != OPEN:
+                raise ValueError(
+                    "coils with initial_tension are wound onto each other; leave pitch, free_length and end_coils out"
+                )
+            return self
         if self.pitch is None and self.free_length is None:
             raise ValueError("pitch and free_length are both missing; give one of them")
         return self
@@ -99,8 +136,8 @@ class SpringSpec(Strict):
         Raises:
             InputError: contradictory entries, with their place.
         """
-        wire = self._function("wire_diameter")
-        mean = self._mean_diameter(wire)
+        section, wire = self._wire()
+        mean = self._mean_diameter(wire, 1.0 if section is None else 0.5 * float(np.ptp(section.polygon[:, 0])))
         radius = PiecewisePolynomial(0.5 * mean.c, mean.x)
         ends_and_transitions = sum(end.end_turns + end.transition_turns for end in bottom_and_top(self.end_coils))
         if ends_and_transitions >= self.turns:
@@ -110,9 +147,12 @@ class SpringSpec(Strict):
             )
 
         def spring(pitch: PiecewisePolynomial) -> Spring:
-            height = self._pitch_with_ends(pitch, wire, radius).antiderivative()
-            return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *bottom_and_top(self.end_coils))
+            height = self._pitch_with_ends(pitch, wire, radius, section).antiderivative()
+            hand, ends = 1 if self.hand == "right" else -1, bottom_and_top(self.end_coils)
+            return Spring(radius, height, wire, hand, *ends, section=section)
 
+        if self.initial_tension is not None:
+            return self._refuse(spring(wire), wound_solid=True)
         if self.pitch is None:
             return self._refuse(self._with_free_length(spring, self.turns - ends_and_transitions))
         built = spring(self._function("pitch"))
@@ -124,18 +164,29 @@ class SpringSpec(Strict):
             )
         return self._refuse(built)
 
-    def _refuse(self, spring: Spring) -> Spring:
+    def _refuse(self, spring: Spring, wound_solid: bool = False) -> Spring:
         """Reject impossible springs; faults of the diameter are reported at the entry that gives it."""
         try:
-            return refuse(spring)
+            return refuse(spring, wound_solid=wound_solid)
         except InputError as error:
             place = error.place.replace("mean_diameter", self.diameter_entry)
             raise InputError(error.problem, place, error.file) from None
 
-    def _mean_diameter(self, wire: PiecewisePolynomial) -> PiecewisePolynomial:
-        """D = De − d = Di + d as a function of the turn, mm."""
+    def _wire(self) -> tuple[Boundary | None, PiecewisePolynomial]:
+        """The section of a wire that is not round, and the height or diameter of any wire over the turns, mm."""
+        if self.wire is None:
+            return None, self._function("wire_diameter")
+        section, height = self.wire.boundary()
+        if section.hole and any(end.tip_thickness < 1.0 for end in bottom_and_top(self.end_coils)):
+            raise InputError("a tube cannot be ground; give closed or open ends", "spring.end_coils")
+        given = self.wire_diameter is not None
+        wire = self._function("wire_diameter") if given else functions.constant(height, self.turns)
+        return section, wire
+
+    def _mean_diameter(self, wire: PiecewisePolynomial, width: float) -> PiecewisePolynomial:
+        """D = De − d = Di + d as a function of the turn, mm, with the wire's width over its height."""
         given = self._function(self.diameter_entry)
-        factor = DIAMETERS[self.diameter_entry]
+        factor = DIAMETERS[self.diameter_entry] * width
         if factor == 0:
             return given
         mean = functions.added(given, wire, factor)
@@ -150,13 +201,17 @@ class SpringSpec(Strict):
             raise InputError(str(error), f"spring.{entry}") from error
 
     def _pitch_with_ends(
-        self, pitch: PiecewisePolynomial, wire: PiecewisePolynomial, radius: PiecewisePolynomial
+        self,
+        pitch: PiecewisePolynomial,
+        wire: PiecewisePolynomial,
+        radius: PiecewisePolynomial,
+        section: Boundary | None,
     ) -> PiecewisePolynomial:
         slope = radius.derivative()
 
         def touching(start: float, end: float) -> float:
             t = np.linspace(start, end, 65)
-            return touching_pitch(wire(t), slope(t)).max()
+            return touching_pitch(wire(t), slope(t), section).max()
 
         return pitch_with_ends(pitch, *bottom_and_top(self.end_coils), touching)
 

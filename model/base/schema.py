@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from difflib import get_close_matches
+from functools import cache
 from operator import index
 from typing import Annotated, Any, ClassVar
 
@@ -71,7 +72,7 @@ class Strict(BaseModel):
         """Notices about the entries: one line, with its place, for each that was given by its earlier name."""
         for name in self._earlier:
             yield f"{name}: this entry is now called {self.RENAMED[name]}"
-        for name, value in self:
+        for name, value in vars(self).items():
             if isinstance(value, Strict):
                 yield from (f"{name}.{notice}" for notice in value.notices())
 
@@ -84,6 +85,7 @@ def _before_comma(name: object, data: dict) -> str:
     return str(names[where - 1]) if is_rest and where else ""
 
 
+@cache
 def _known(group: type[BaseModel]) -> dict[str, FieldInfo]:
     """The entries of a group by the names that a file has for them."""
     return {field.alias or name: field for name, field in group.model_fields.items()}

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from coilset.meshes.springs.spring import SpringEntry, SpringSpec
+from coilset.meshes.springs.spring import PAST, SpringEntry, SpringSpec
 from coilset.meshes.springs.stations import ElementsPerTurn
 from coilset.model.base.entry import Strict, Whole, check_entries
 from coilset.model.base.yaml import read_data
@@ -134,6 +134,12 @@ class ContactSpec(Strict):
         Unit("N/mm²"),
         Field(gt=0, description="contact stiffness: force per length and penetration, N/mm per mm; default E/40"),
     ] = None
+    arbor: Annotated[
+        float | None, Unit("mm"), Field(gt=0, description="diameter of a smooth arbor inside the coils, mm")
+    ] = None
+    sleeve: Annotated[
+        float | None, Unit("mm"), Field(gt=0, description="inner diameter of a smooth sleeve around the coils, mm")
+    ] = None
     penetration_limit: Annotated[
         float,
         Unit("wire diameters"),
@@ -256,8 +262,8 @@ class Case(Strict):
         Annotated[Literal["none"], Tag("(word)")] | Annotated[Part, Unit("1"), Field(gt=0, lt=1), Tag("(part)")],
         Discriminator(lambda value: "(word)" if value == "none" else "(part)"),
         Field(
-            description="error in force that automatic steps may cause, relative to the maximum force, such as "
-            "0.2 %; none: errors of steps are not estimated, and all phases give their steps"
+            description="allowed error of force and set, and of the force by automatic steps, relative to the maximum "
+            "force, such as 0.2 %; none: errors are not estimated, and all phases give their steps"
         ),
     ] = 0.002
     loading: Annotated[
@@ -352,12 +358,36 @@ class Case(Strict):
         return self
 
     @model_validator(mode="after")
+    def _tension_is_held(self) -> Self:
+        if "initial_tension" in self.past and self.ends == "seats":
+            raise ValueError(
+                "spring.initial_tension: seats only press, but an extension spring is pulled; give ends: clamped"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _heat_takes_time(self) -> Self:
         if self.heat and self.mesh.section.kind == "warping":
             raise ValueError("heat needs sections of fibres; give mesh.section.kind: curved or plane")
         for number, phase in enumerate(self.loading):
             if self.heat and isinstance(phase, Phase) and phase.seconds is None:
                 raise ValueError(f"loading.{number} takes no time, but heat flows; give a target and seconds")
+        return self
+
+    @model_validator(mode="after")
+    def _wire_belongs(self) -> Self:
+        if not isinstance(self.spring, SpringSpec) or self.spring.wire is None:
+            return self
+        if self.mesh.axis == "chords":
+            raise ValueError("spring.wire is turned to the coil, but chords are straight; give mesh.axis: curved")
+        if self.heat:
+            raise ValueError("heat flows in round wire only; leave heat out, or spring.wire")
+        if self.contact.arbor or self.contact.sleeve:
+            raise ValueError("an arbor or sleeve is for round wire; leave it out, or spring.wire")
+        if self.contact.coils == "gaps":
+            raise ValueError("gap elements are for round wire; give contact.coils: closest")
+        if self.contact.friction.coils:
+            raise ValueError("friction of coils on coils is for round wire; leave contact.friction.coils out")
         return self
 
     @property
@@ -385,7 +415,7 @@ class Case(Strict):
         """Entries of `spring` on the wire's manufacture; without them the wire is free of stress."""
         if not isinstance(self.spring, SpringSpec):
             return []
-        return [name for name in ("made_by", "peening") if getattr(self.spring, name) is not None]
+        return [name for name in PAST if getattr(self.spring, name) is not None]
 
 
 Group = TypeVar("Group", bound=Strict)

@@ -10,7 +10,7 @@ Every kind is a `Contact`.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import NamedTuple
@@ -18,9 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from coilset.meshes.springs.ends import ENDS as ENDS
+from coilset.model.body.state import State, Where
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.elements import Room, extent_of_contact
-from coilset.model.contact.memory import Memory
 
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
 LEVEL = 2  # the one along the spring's axis
@@ -28,6 +28,36 @@ LEVEL = 2  # the one along the spring's axis
 # the law of the onset, c p²/(4 w), it has then sunk in by 4e-4 w, two millionths of a millimetre for a wire of 5 mm.
 # Smaller forces are within the tolerance of the iteration.
 CLOSED_OF_ONSET_FORCE = 4e-8
+
+
+class Memory:
+    """Named arrays that a contact carries from one equilibrium to the next, its part of the state.
+
+    It writes the trial arrays and also reads those of the last equilibrium.
+
+    Args:
+        stations: name → station of each row of that array. The rank of the station knows the row after an evaluation;
+            the others may not. Arrays that are not named are known to every rank.
+        arrays: name → values at the start, the same on every rank.
+
+    Attributes:
+        state: State that holds them.
+    """
+
+    def __init__(self, stations: Mapping[str, np.ndarray], **arrays: np.ndarray) -> None:
+        self.state, self.stations = State(), dict(stations)
+        for name, values in arrays.items():
+            self.state.add(name, np.array(values, dtype=float), Where.SHARED)
+
+    def committed(self, name: str) -> np.ndarray:
+        """The array at the last equilibrium."""
+        return self.state[name].equilibrium
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.state[name].trial
+
+    def __setitem__(self, name: str, values: np.ndarray | float) -> None:
+        self.state[name].trial[...] = values
 
 
 @dataclass(frozen=True)
@@ -154,7 +184,7 @@ class Contact(ABC):
 
     Attributes:
         name: for labels.
-        end: `bottom` or `top` if its forces are those of a seat, else None.
+        end: the rigid body that presses on the wire: seat `bottom` or `top`, `arbor` or `sleeve`; None between coils.
         needs_rotations: whether it needs `TrialPositions.rotations`.
         points: the wire's points on which it acts, which `Contribution.point` counts; None of a kind without.
         lengths: length of wire assigned to each of these, shape (m,), mm.

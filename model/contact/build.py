@@ -12,12 +12,15 @@ from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine, WirePoints
 from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.gap import Gaps
-from coilset.model.contact.hold import Groove, Mount
+from coilset.model.contact.hold import Groove, Guide, Mount
 from coilset.model.contact.seat import Seat
 
-MODULUS_OF_BEDDING = 40.0  # default bedding is E/40: steel wire penetrates by some thousandths of its diameter at block
+# Default bedding is E/40: steel wire penetrates by some thousandths of its diameter at block. Wire that flattens where
+# it touches wire along a line is stiffer, and costs more (docs/contact.md).
+MODULUS_OF_BEDDING = 40.0
 FREE_TILT_OF_BEDDING = 1e-7  # stiffness of a joint that is free to tilt, relative to that of the coil's bedding, b r³
 ASIDE_OF_DIAMETER = 0.1  # nodes of a gap element may be so far beside each other: they meet 0.5 % of a diameter late
+GUIDES = "arbor", "sleeve"
 ONSET_OF_DIAMETER = 1e-3  # distance over which contact sets in, in wire diameters
 
 
@@ -47,19 +50,43 @@ def build_contacts(
     Raises:
         InputError: if a seat or a gap element does not fit to the wire or its mesh.
     """
-    bedding = contact.bedding or E / MODULUS_OF_BEDDING
+    bedding = bedding_of(contact, E)
     radius, lengths = 0.5 * spring.wire_diameter(turns), np.diff(spring.arc_length(turns))
     onset = ONSET_OF_DIAMETER * 2.0 * float(radius.min())
     points = CentreLine(turns, radius, lengths).points()
     contacts: list[Contact] = []
     if contact.coils == "closest":
-        contacts.append(Coils(points, stations, bedding, onset))
+        contacts.append(Coils(points, stations, bedding, onset, spring.section))
     else:
         contacts.append(gaps_one_turn_apart(turns, radius, lengths, bedding, onset))
     if seats is not None:
         for end in ENDS:
             contacts += build_seat(end, seats, spring, points, stations, (bedding, onset), end in moving)
+    for name in GUIDES:
+        diameter = getattr(contact, name)
+        if diameter is not None:
+            refuse_overlap(name, diameter, stations, radius)
+            contacts.append(Guide(name, points, 0.5 * diameter, bedding, onset))
     return contacts + frictions(contact.friction, contacts, stations, seats_at(spring.free_length))
+
+
+def bedding_of(contact: Any, E: float) -> float:
+    """Stiffness of the bedding, N/mm per mm, that the `contact` section of a case gives, or by default; E in MPa."""
+    return float(contact.bedding or E / MODULUS_OF_BEDDING)
+
+
+def refuse_overlap(name: str, diameter: float, stations: np.ndarray, radius: np.ndarray) -> None:
+    """Reject an arbor or sleeve that does not fit to the unloaded coils.
+
+    Raises:
+        InputError: with the diameter at which it does.
+    """
+    away = np.hypot(stations[:, 0], stations[:, 1])
+    inside, outside = 2.0 * float((away - radius).min()), 2.0 * float((away + radius).max())
+    if name == "arbor" and diameter > inside:
+        raise InputError(f"{diameter:g} mm do not fit into coils of {inside:.4g} mm inside", "contact.arbor")
+    if name == "sleeve" and diameter < outside:
+        raise InputError(f"{diameter:g} mm do not fit around coils of {outside:.4g} mm", "contact.sleeve")
 
 
 def seats_at(level: float) -> np.ndarray:

@@ -1,17 +1,19 @@
 """Wire on wire: points of the wire against the closest points of the other coils, wherever these are.
 
-The gap is the distance from the point to the other coil's centre line less both radii there. Each coil is projected
-onto the other with half of the bedding, so that neither is the master.
+The gap is the distance from the point to the other coil's centre line less both radii there; of wire that is not round,
+its gauge (gauge.py) in place of the distance. Each coil is projected onto the other with half of the bedding, so that
+neither is the master.
 """
 
 import numpy as np
 from numba import njit
 
+from coilset.meshes.boundary import Boundary
 from coilset.model.base.extremes import greatest, relative_motion
-from coilset.model.contact.base import Contact, Contribution, TrialPositions
-from coilset.model.contact.curve import Curve, WirePoints
+from coilset.model.contact.base import Contact, Contribution, Memory, TrialPositions
+from coilset.model.contact.curve import Curve, WirePoints, curve_weights
 from coilset.model.contact.elements import PAIR, Bedding, Pressed, coil_elements
-from coilset.model.contact.memory import Memory
+from coilset.model.contact.gauge import extremes, gauge_table
 from coilset.model.contact.search import (
     PLACES,
     KnownPart,
@@ -41,6 +43,7 @@ class Coils(Contact):
         stations: stress-free positions, shape (n, 3), mm.
         bedding: force per length of wire and penetration, N/mm per mm.
         onset: distance over which contact sets in, mm.
+        section: of a wire that is not round, see `Spring`.
 
     Attributes:
         multiplier_offset: by which each point is pressed beyond its penetration at each place, shape (m, PLACES), mm.
@@ -51,23 +54,36 @@ class Coils(Contact):
     memory: Memory
     multiplier_offset: np.ndarray
 
-    def __init__(self, points: WirePoints, stations: np.ndarray, bedding: float, onset: float):
+    def __init__(
+        self,
+        points: WirePoints,
+        stations: np.ndarray,
+        bedding: float,
+        onset: float,
+        section: Boundary | None = None,
+    ):
         self.points, self.onset, self._room = points, onset, max(FEW, len(points))
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
         self.overlap = np.zeros((len(points), PLACES))
         self._y = np.column_stack([stations, points.line.radius])  # stations of the last search, with their radii
         line = points.line
         self._curve = Curve(self._y, line.turns, line.first, line.cubic)
-        self._points = Points(points.weights, points.stations, points.radius, points.turns, self.overlap)
-        self._bedding = Bedding(points.weights, points.element, line.dofs, self.stiffness, onset)
+        across = np.zeros((len(points), 2)) if section is None else outwards(points, stations)
+        shape = across, gauge_table(section)
+        self._points = Points(points.weights, points.stations, points.radius, points.turns, self.overlap, *shape)
+        self._bedding = Bedding(points.weights, points.element, line.dofs, self.stiffness, onset, *shape)
+        farthest, steepest = extremes(shape[1])  # of a gap that changes faster than the distance
         self._widest, self._all_elements = float(points.line.radius.max()), np.array([[0, len(points.line.lengths)]])
+        self._skin = SKIN * self._widest
+        if section is not None:
+            self._widest *= farthest * (1.0 + 0.5 * SKIN)
         self.aside = STATIONS_ASIDE + POSTS_ASIDE * post_stride(self._widest, longest_element(self._y))
         pair, where, _ = self.near(TrialPositions(stations, np.empty(0)))
         np.minimum.at(self.overlap, self.places(pair, where), where[:, 1])
         first = points.stations[:, 0]
         self.memory = Memory({"multiplier_offset": first}, multiplier_offset=np.zeros_like(self.overlap))
         self.multiplier_offset = self.memory["multiplier_offset"]
-        self._amplification, self._skin = points.line.amplification(), SKIN * self._widest
+        self._amplification = steepest * points.line.amplification()
         none = np.empty(0)
         self._nothing = Contribution(
             np.empty((0, PAIR), np.int64),
@@ -159,6 +175,14 @@ class Coils(Contact):
         at = self.places(pair, where)
         np.maximum.at(after, at, before[at] - where[:, 1])
         self.memory["multiplier_offset"] = after
+
+
+def outwards(points: WirePoints, stations: np.ndarray) -> np.ndarray:
+    """Horizontal unit vectors across the wire, away from the z axis, shape (m, 2)."""
+    slope = curve_weights(points.line.cubic[points.element], points.xi, 1)
+    along = np.einsum("mk,mki->mi", slope, stations[points.stations])
+    across = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(along[:, 0], along[:, 1])[:, None]
+    return across * np.sign(np.sum(across * points.at(stations)[:, :2], axis=1))[:, None]
 
 
 def moved(there: TrialPositions, here: TrialPositions) -> float:

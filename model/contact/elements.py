@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.contact.curve import STENCIL, Curve, point_on_curve, station_weight
+from coilset.model.contact.gauge import gauge
 
 COMPILED = {"cache": True, "error_model": "numpy"}
 PAIR = 6 * STENCIL  # displacements of the eight stations of a pair
@@ -22,6 +23,7 @@ class Bedding(NamedTuple):
         element_dofs: degrees of freedom of all elements, shape (elements, 12).
         stiffness: of the points, N/mm, shape (points,).
         onset: distance over which contact sets in, mm.
+        outward, table: as in `search.Points`.
     """
 
     weights: np.ndarray
@@ -29,6 +31,8 @@ class Bedding(NamedTuple):
     element_dofs: np.ndarray
     stiffness: np.ndarray
     onset: float
+    outward: np.ndarray
+    table: np.ndarray
 
 
 class Pressed(NamedTuple):
@@ -102,6 +106,8 @@ def coil_elements(curve: Curve, bedding: Bedding, pressed: Pressed, room: Room) 
 
         c g_u g_uᵀ − f g_uu = a aᵀ (c n nᵀ − f P) + f g_uξ g_uξᵀ / g_ξξ.
 
+    Of wire that is not round, d is its gauge N(q), n = ∇N and P = ∇²N (`coilset.model.contact.gauge`).
+
     Args:
         curve: the centre line.
         bedding: of the points.
@@ -109,7 +115,7 @@ def coil_elements(curve: Curve, bedding: Bedding, pressed: Pressed, room: Room) 
         room: written, see Contribution.room.
     """
     y, _, first, cubic = curve
-    weights, element, element_dofs, stiffness, onset = bedding
+    weights, element, element_dofs, stiffness, onset, outward, table = bedding
     pair, where, offset, p = pressed
     dofs, forces, k, pressure, penetration, point, onset_force = room
     count, size, half = len(pair), 2 * STENCIL, 3 * STENCIL
@@ -133,9 +139,16 @@ def coil_elements(curve: Curve, bedding: Bedding, pressed: Pressed, room: Room) 
             da[STENCIL + s] = -station_weight(cubic[e, s], t, 1)
         second = -ddc[3]
         for l in range(3):
-            Pc[l] = 0.0
             for o in range(3):
                 P[l, o] = ((1.0 if l == o else 0.0) - n[l] * n[o]) / d
+        if len(table):
+            _, n[0], n[1], n[2], P[0, 0], P[0, 1], P[0, 2], P[1, 1], P[1, 2], P[2, 2] = gauge(
+                p[i, 0] - c[0], p[i, 1] - c[1], p[i, 2] - c[2], outward[i, 0], outward[i, 1], table
+            )
+            P[1, 0], P[2, 0], P[2, 1] = P[0, 1], P[0, 2], P[1, 2]
+        for l in range(3):
+            Pc[l] = 0.0
+            for o in range(3):
                 Pc[l] += P[l, o] * dc[o]
             second += dc[l] * Pc[l] - n[l] * ddc[l]
         eliminated = pressure[m] / second if pair[m, 2] and second > 0.0 else 0.0

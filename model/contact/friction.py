@@ -31,11 +31,10 @@ from functools import cached_property
 import numpy as np
 from numba import njit
 
-from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, TrialPositions
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory, TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import STENCIL, curve_weights
 from coilset.model.contact.elements import COMPILED, one_sided_at
-from coilset.model.contact.memory import Memory
 from coilset.model.contact.seat import Seat
 from coilset.model.rotations.triples import Triple, axis, back, cross, dot, plus, scaled, times, triple
 from coilset.model.rotations.vectors import chart_derivatives, rotation_derivatives

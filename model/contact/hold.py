@@ -1,9 +1,9 @@
-"""Lateral support of the end coil by a seat, and support of the seat itself: linear springs without gaps."""
+"""Lateral support: of the end coil by a seat's groove, of the coils by arbor or sleeve; and support of the seat."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from coilset.model.contact.base import Contact, Contribution, TrialPositions
+from coilset.model.contact.base import Contact, Contribution, Memory, TrialPositions, one_sided
 from coilset.model.contact.curve import STENCIL, WirePoints
 from coilset.model.contact.plate import Plate, radial
 
@@ -61,6 +61,65 @@ class Groove(Contact):
     def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
         """Those of the groove; see Contact."""
         return np.isin(stations, self.wire.stations[self.at])
+
+
+class Guide(Contact):
+    """A smooth rigid cylinder about the spring's axis, fixed in space: an arbor inside the coils, or a sleeve around.
+
+    The gap is the distance of the centre line from the cylinder less the wire's radius, g = ±(ρ − R) − r.
+
+    Args:
+        name: `arbor` or `sleeve`.
+        points: WirePoints.
+        radius: R of the cylinder, mm.
+        bedding: force per length of wire and penetration, N/mm per mm.
+        onset: distance over which contact sets in, mm.
+    """
+
+    limits_step = True
+    points: WirePoints
+    memory: Memory
+    multiplier_offset: np.ndarray
+    aside = STENCIL  # no other part of the wire matters
+
+    def __init__(self, name: str, points: WirePoints, radius: float, bedding: float, onset: float):
+        self.name = self.end = name
+        self.points, self.radius, self.onset = points, radius, onset
+        self.side = 1.0 if name == "arbor" else -1.0
+        self.lengths, self.stiffness, self.dofs = points.length, bedding * points.length, points.dofs()
+        self.memory = Memory({"multiplier_offset": points.stations[:, 0]}, multiplier_offset=np.zeros(len(points)))
+        self.multiplier_offset = self.memory["multiplier_offset"]
+
+    def gaps(self, p: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Gaps of the `points` at `p`, shape (m, 3), negative for penetration, mm."""
+        return self.side * (np.hypot(p[:, 0], p[:, 1]) - self.radius) - self.points.radius[points]
+
+    def evaluate(self, trial: TrialPositions) -> Contribution:
+        """Forces across the cylinder's surface, for the points that touch."""
+        points = trial.points(self.points)
+        p, offset = self.points.at(trial.x, points), self.multiplier_offset[points]
+        gap = self.gaps(p, points)
+        found = np.flatnonzero(gap < offset)
+        at, p, gap, pressed = points[found], p[found], gap[found], (gap - offset)[found]
+        force, c = one_sided(pressed, self.stiffness[at], self.onset)
+        _, e, ee = radial(p)
+        weights, normal, bend = self.points.weights[at], self.side * e, self.side * ee
+        grad = (weights[:, :, None] * normal[:, None, :]).reshape(len(at), 3 * STENCIL)
+        k = c[:, None, None] * normal[:, :, None] * normal[:, None, :] - force[:, None, None] * bend
+        k = np.einsum("ma,mij,mb->maibj", weights, k, weights).reshape(len(at), 3 * STENCIL, 3 * STENCIL)
+        onset_force = self.stiffness[at] * self.onset
+        return Contribution(self.dofs[at], -force[:, None] * grad, k, force, -gap, at, onset_force)
+
+    def max_penetration(self, trial: TrialPositions) -> float:
+        """Maximum penetration, mm."""
+        points = trial.points(self.points)
+        return -float(self.gaps(self.points.at(trial.x, points), points).min(initial=0.0))
+
+    def augment(self, trial: TrialPositions) -> None:
+        """Increase each point's offset by its penetration."""
+        points = trial.points(self.points)
+        gap = self.gaps(self.points.at(trial.x, points), points)
+        self.multiplier_offset[points] = np.maximum(self.multiplier_offset[points] - gap, 0.0)
 
 
 class Mount(Contact):

@@ -7,6 +7,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.contact.curve import Curve, element_polynomials, points_on_wire
+from coilset.model.contact.gauge import gauge
 
 LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
 PLACES, TURNS_TO_NEXT = 6, 1.5  # of locations, see `place`; turns up to which a location is on the next coil
@@ -14,6 +15,8 @@ MOST_CELLS_PER_STATION = 16  # cells of the grid
 LEAST_POST_DISTANCE = 0.5  # distance between the sorted stations, in wire radii
 # Of ξ. A step of Newton's method squares the error, so that after one as short as this only rounding is left.
 LAST_STEP, ROUNDING = 1e-8, 1e-14
+
+Shape = tuple[float, float, np.ndarray]  # of a point: its direction outwards and the table of `gauge`
 
 
 @njit(cache=True)
@@ -65,8 +68,10 @@ def distance2(p: np.ndarray, x: np.ndarray, j: int) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def slope_and_curvature(p: np.ndarray, curve: np.ndarray, xi: float) -> tuple[float, float]:
+def slope_and_curvature(p: np.ndarray, curve: np.ndarray, xi: float, shape: Shape) -> tuple[float, float]:
     """First and second derivative by ξ of the gap |p − c(ξ)| − r(ξ) on an element with the polynomials `curve`."""
+    if len(shape[2]):
+        return gauge_slope_and_curvature(p, curve, xi, shape)
     distance2 = along = speed2 = bend = 0.0
     for k in range(3):
         a, b, c, d = curve[0, k], curve[1, k], curve[2, k], curve[3, k]
@@ -83,8 +88,30 @@ def slope_and_curvature(p: np.ndarray, curve: np.ndarray, xi: float) -> tuple[fl
 
 
 @njit(cache=True, error_model="numpy")
-def gap_at(p: np.ndarray, curve: np.ndarray, xi: float) -> float:
-    """|p − c(ξ)| − r(ξ) on an element."""
+def gauge_slope_and_curvature(p: np.ndarray, curve: np.ndarray, xi: float, shape: Shape) -> tuple[float, float]:
+    """As `slope_and_curvature`, of the gap N(p − c(ξ)) − r(ξ) of a wire that is not round."""
+    q, d, dd = np.empty(3), np.empty(4), np.empty(4)
+    for k in range(4):
+        a, b, c, e = curve[0, k], curve[1, k], curve[2, k], curve[3, k]
+        d[k], dd[k] = b + xi * (2.0 * c + xi * 3.0 * e), 2.0 * c + 6.0 * e * xi
+        if k < 3:
+            q[k] = p[k] - (a + xi * (b + xi * (c + xi * e)))
+    _, nx, ny, nz, xx, xy, xz, yy, yz, zz = gauge(q[0], q[1], q[2], *shape)
+    squares = xx * d[0] * d[0] + yy * d[1] * d[1] + zz * d[2] * d[2]
+    squares += 2.0 * (xy * d[0] * d[1] + xz * d[0] * d[2] + yz * d[1] * d[2])
+    slope, bend = nx * d[0] + ny * d[1] + nz * d[2], nx * dd[0] + ny * dd[1] + nz * dd[2]
+    return -slope - d[3], squares - bend - dd[3]
+
+
+@njit(cache=True, error_model="numpy")
+def gap_at(p: np.ndarray, curve: np.ndarray, xi: float, shape: Shape) -> float:
+    """|p − c(ξ)| − r(ξ) on an element, or N(p − c(ξ)) − r(ξ) of a wire that is not round."""
+    if len(shape[2]):
+        q = np.empty(3)
+        for k in range(3):
+            q[k] = p[k] - (curve[0, k] + xi * (curve[1, k] + xi * (curve[2, k] + xi * curve[3, k])))
+        radius = curve[0, 3] + xi * (curve[1, 3] + xi * (curve[2, 3] + xi * curve[3, 3]))
+        return gauge(q[0], q[1], q[2], *shape)[0] - radius
     square = 0.0
     for k in range(3):
         square += (p[k] - (curve[0, k] + xi * (curve[1, k] + xi * (curve[2, k] + xi * curve[3, k])))) ** 2
@@ -92,20 +119,20 @@ def gap_at(p: np.ndarray, curve: np.ndarray, xi: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def station_slope(p: np.ndarray, curves: np.ndarray, j: int) -> float:
+def station_slope(p: np.ndarray, curves: np.ndarray, j: int, shape: Shape) -> float:
     """First derivative by ξ of the gap at station `j`; `curves` are the polynomials of all elements."""
     e = min(j, len(curves) - 1)
-    return slope_and_curvature(p, curves[e], float(j - e))[0]
+    return slope_and_curvature(p, curves[e], float(j - e), shape)[0]
 
 
 @njit(cache=True, error_model="numpy")
-def closest(p: np.ndarray, curves: np.ndarray, j: int, begin: int, end: int) -> tuple[int, float, bool]:
+def closest(p: np.ndarray, curves: np.ndarray, j: int, begin: int, end: int, shape: Shape) -> tuple[int, float, bool]:
     """Closest point to `p` along the wire, sought from station `j` between the stations `begin` and `end`.
 
     Returns:
         Element, ξ, and whether it is inside the wire; element −1 if it is beyond `begin` or `end`, inside the wire.
     """
-    last, slope = len(curves), station_slope(p, curves, j)
+    last, slope = len(curves), station_slope(p, curves, j, shape)
     direction = -1 if slope > 0.0 else 1
     near, stride, ahead = j, 1, slope
     while True:  # in growing steps until the gap no longer decreases
@@ -114,28 +141,28 @@ def closest(p: np.ndarray, curves: np.ndarray, j: int, begin: int, end: int) -> 
             if 0 < near < last:
                 return -1, 0.0, False
             return (0, 0.0, False) if near == 0 else (last - 1, 1.0, False)
-        ahead = station_slope(p, curves, far)
+        ahead = station_slope(p, curves, far, shape)
         if ahead * direction >= 0.0:
             break
         near, slope, stride = far, ahead, 2 * stride
     while abs(far - near) > 1:
         middle = (near + far) // 2
-        found = station_slope(p, curves, middle)
+        found = station_slope(p, curves, middle, shape)
         if found * direction < 0.0:
             near, slope = middle, found
         else:
             far, ahead = middle, found
     # from where a straight line through both stations' slopes vanishes
     share = slope / (slope - ahead) if slope != ahead else 0.5
-    return min(near, far), root(p, curves[min(near, far)], share if near < far else 1.0 - share), True
+    return min(near, far), root(p, curves[min(near, far)], share if near < far else 1.0 - share, shape), True
 
 
 @njit(cache=True, error_model="numpy")
-def root(p: np.ndarray, curve: np.ndarray, xi: float) -> float:
+def root(p: np.ndarray, curve: np.ndarray, xi: float, shape: Shape) -> float:
     """Where the slope of the gap changes its sign on an element: Newton's method from `xi`, within a bracket."""
     low, high = 0.0, 1.0
     for _ in range(60):
-        slope, curvature = slope_and_curvature(p, curve, xi)
+        slope, curvature = slope_and_curvature(p, curve, xi, shape)
         if slope > 0.0:
             high = xi
         else:
@@ -193,6 +220,7 @@ class Points(NamedTuple):
         weights, stations: shape (m, 4).
         radius, turns: shape (m,), radius in mm.
         overlap: what counts as touching though the bodies overlap, at each `place`, shape (m, PLACES), mm.
+        outward: horizontal unit vectors away from the coil's axis, shape (m, 2); table: of `gauge`, empty if round.
     """
 
     weights: np.ndarray
@@ -200,6 +228,8 @@ class Points(NamedTuple):
     radius: np.ndarray
     turns: np.ndarray
     overlap: np.ndarray
+    outward: np.ndarray
+    table: np.ndarray
 
 
 class KnownPart(NamedTuple):
@@ -246,7 +276,7 @@ def near_locations(
     Returns:
         Number of locations; more than the capacity of `out` if its arrays were too short.
     """
-    weights, stations, radius, turns, overlap = points
+    weights, stations, radius, turns, overlap, outward, table = points
     y, station_turns, first, cubic = curve
     elements, widest, longest = known
     p, pair, where = out
@@ -262,6 +292,7 @@ def near_locations(
     low, count, size, head, after = grid(x[:, :3], reach)
     curves, cube, found = element_polynomials(y, first, cubic, elements), np.empty(3, np.int64), 0
     for i in active:
+        shape = outward[i, 0], outward[i, 1], table
         for k in range(3):
             cube[k] = math.floor((p[i, k] - low[k]) / size)
         for a in range(max(cube[0] - 1, 0), min(cube[0] + 2, count[0])):
@@ -278,13 +309,13 @@ def near_locations(
                             continue
                         if now + 1 < len(posts) and posts[now + 1] <= end and distance2(p[i], x, now + 1) <= here:
                             continue
-                        e, xi, inside = closest(p[i], curves, posts[now], begin, end)
+                        e, xi, inside = closest(p[i], curves, posts[now], begin, end, shape)
                         if e < 0:
                             continue
                         turn = station_turns[e] + xi * (station_turns[e + 1] - station_turns[e])
                         if abs(turn - turns[i]) < LEAST_TURNS_BETWEEN:
                             continue
-                        gap = gap_at(p[i], curves[e], xi) - radius[i] - overlap[i, place(turn - turns[i])]
+                        gap = gap_at(p[i], curves[e], xi, shape) - radius[i] - overlap[i, place(turn - turns[i])]
                         if gap >= margin:
                             continue
                         if found < len(pair):

@@ -5,10 +5,9 @@ In the coordinates q of its plate (plate.py) a flat seat is the plane qz = 0; a 
 
 import numpy as np
 
-from coilset.model.contact.base import LEVEL, Contact, Contribution, TrialPositions, one_sided
+from coilset.model.contact.base import LEVEL, Contact, Contribution, Memory, TrialPositions, one_sided
 from coilset.model.contact.curve import POINTS_PER_ELEMENT, STENCIL, WirePoints
 from coilset.model.contact.elements import FLAT, FlatSeat, flat_seat_elements
-from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
 # Stiffness of the spring that holds a lifted tip, as a fraction of the bedding of one wire diameter. 1e-3 changed the

@@ -13,18 +13,24 @@ class FilledSection:
 
     Args:
         points: of the section, in wire radii, shape (n, 2).
+        corners: closed outline of a wire that is not round, in wire radii, shape (m + 1, 2).
 
     Attributes:
-        places: those of the picture, in wire radii, shape (m, 2); the last `ROUND` are on the surface.
+        places: those of the picture, in wire radii, shape (m, 2); the last ones are on the surface.
     """
 
-    def __init__(self, points: np.ndarray) -> None:
+    def __init__(self, points: np.ndarray, corners: np.ndarray | None = None) -> None:
         inner, self._carry = rings(points)
-        self.places = np.concatenate([inner, rim(ROUND)])
+        self._angles = None if corners is None else np.arctan2(*corners[:-1].T[::-1]) % (2.0 * np.pi)
+        self.places = np.concatenate([inner, rim(ROUND) if corners is None else corners[:-1]])
 
     def values(self, at_points: np.ndarray, on_surface: np.ndarray) -> np.ndarray:
         """Values at the places, shape (m,), from those at the points and at equal angles on the surface."""
-        return np.concatenate([self._carry @ at_points, refined(on_surface, ROUND)])
+        if self._angles is None:
+            return np.concatenate([self._carry @ at_points, refined(on_surface, ROUND)])
+        even = 2.0 * np.pi * np.arange(len(on_surface) + 1) / len(on_surface)
+        around = np.interp(self._angles, even, np.append(on_surface, on_surface[:1]))
+        return np.concatenate([self._carry @ at_points, around])
 
     def shear_around(self, t12: np.ndarray, t13: np.ndarray, inside: Inside) -> np.ndarray:
         """Shear stress about the wire's axis, positive as in a compressed spring, from `values` of both components."""

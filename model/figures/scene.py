@@ -9,7 +9,7 @@ import pyvista as pv
 import pyvista.plotting
 
 from coilset.model.base.style import DIVERGING, ROUND, round_end
-from coilset.model.figures.wire import closed, inside, shear_around, surface
+from coilset.model.figures.wire import closed, inside, outline, shear_around, surface
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
@@ -67,7 +67,7 @@ def springs(path: str | Path, run: Run) -> None:
     rings = RINGS_PER_ELEMENT * len(radius) + 1
     shears = shear_around(run)[snapshots].mean(axis=2)
     wires = [
-        surface(data["turn"].values, x, radius, shear, inside(run), rings)
+        surface(data["turn"].values, x, radius, shear, inside(run), rings, outline(run))
         for x, shear in zip(positions, shears, strict=True)
     ]
     x = positions.reshape(-1, 3)

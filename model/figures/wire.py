@@ -22,6 +22,14 @@ def hand(run: Run) -> int:
     return 1 if np.sum(x[:-1] * y[1:] - y[:-1] * x[1:]) > 0.0 else -1  # twice the area swept by the radius
 
 
+def outline(run: Run) -> np.ndarray | None:
+    """Closed outline of a wire that is not round, y and z in wire radii, shape (n + 1, 2); None of a round one."""
+    if "outline" not in run.data:
+        return None
+    corners = run.data["outline"].values
+    return np.concatenate([corners, corners[:1]])
+
+
 def shear_around(run: Run) -> np.ndarray:
     """Shear stress about the wire's axis on its surface, positive as in a compressed spring, MPa.
 
@@ -99,13 +107,23 @@ def tubes(run: Run, shown: Frames, rings: int) -> tuple[np.ndarray, np.ndarray]:
         Places, shape (moments, rings, angles + 1, 3), mm, and `shear_around` there.
     """
     turn, radius = run.data["turn"].values, run.data["wire_radius"].values
-    both = [surface(turn, x, radius, shear, inside(run), rings) for x, shear in zip(shown.x, shown.shear, strict=True)]
+    corners = outline(run)
+    both = [
+        surface(turn, x, radius, shear, inside(run), rings, corners)
+        for x, shear in zip(shown.x, shown.shear, strict=True)
+    ]
     places, stress = (np.stack(one) for one in zip(*both, strict=True))
     return places, stress
 
 
 def surface(
-    turn: np.ndarray, x: np.ndarray, wire_radius: np.ndarray, shear: np.ndarray, side: Inside, rings: int
+    turn: np.ndarray,
+    x: np.ndarray,
+    wire_radius: np.ndarray,
+    shear: np.ndarray,
+    side: Inside,
+    rings: int,
+    corners: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Surface of the wire at one moment, and the stress there, as `tubes` gives them for several.
 
@@ -116,11 +134,17 @@ def surface(
         shear: about the wire's axis, mean of an element's sections, at evenly spaced angles, shape (n, angles), MPa.
         side: position of the inside of the coil.
         rings: along the wire.
+        corners: `outline` of a wire that is not round.
     """
     at = np.linspace(turn[0], turn[-1], rings)
     middle = 0.5 * (turn[1:] + turn[:-1])
-    angle = np.linspace(0.0, 2.0 * np.pi, shear.shape[-1] + 1) + side.angle
-    places = _tube(CubicSpline(turn, x, axis=0), at, np.interp(at, middle, wire_radius), angle)
+    angle = np.linspace(0.0, 2.0 * np.pi, shear.shape[-1] + 1)
+    if corners is None:
+        corners = np.stack([np.cos(angle + side.angle), np.sin(angle + side.angle)], axis=1)
+    else:
+        closed_shear, around = np.column_stack([shear, shear[:, :1]]), np.arctan2(*corners[:-1].T[::-1]) % (2.0 * np.pi)
+        shear = np.stack([np.interp(around, angle, row) for row in closed_shear])
+    places = _tube(CubicSpline(turn, x, axis=0), at, np.interp(at, middle, wire_radius), corners)
     along = np.clip(np.searchsorted(middle, at) - 1, 0, len(middle) - 2)
     part = np.clip((at - middle[along]) / (middle[along + 1] - middle[along]), 0.0, 1.0)[:, None]
     stress = (1.0 - part) * shear[along] + part * shear[along + 1]
@@ -146,10 +170,11 @@ def section_points(run: Run, snapshot: int) -> np.ndarray:
     return centre + turned * (y * inwards + z * binormal)
 
 
-def _tube(line: CubicSpline, at: np.ndarray, radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Surface about a centre line, shape (rings, angles, 3)."""
+def _tube(line: CubicSpline, at: np.ndarray, radius: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Surface about a centre line, with corners y, z of the section in wire radii, shape (rings, corners, 3)."""
     centre, inwards, binormal = _directions(line, at)
-    ring = np.cos(angle)[:, None] * inwards[:, None] + np.sin(angle)[:, None] * binormal[:, None]
+    y, z = corners[..., None].swapaxes(0, 1)
+    ring = y * inwards[:, None] + z * binormal[:, None]
     return centre[:, None] + radius[:, None, None] * ring
 
 

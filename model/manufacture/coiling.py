@@ -25,7 +25,7 @@ from coilset.model.base.errors import SolveError
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.wire import BEND, TWIST, SectionLaw, Wire
 
-LOADING, RELEASE = 40, 4  # increments
+LOADING, RELEASE, TWISTS = 40, 4, 4  # increments
 FREE = np.array([0, 1, 2, 4])  # ε, γ12, γ13, κ2 follow while the wire is bent and twisted
 CLOSE = 1e-10  # of the spring's curvature
 ATTEMPTS = 30
@@ -116,6 +116,35 @@ def grind(
     """
     wire = Wire(law, fibres, radius, curved, states, shape)
     wire.step(np.zeros(6), np.arange(6), np.zeros(6), 0.0)
+    return wire.states
+
+
+def winding_torque(tension: float, curvature: float, torsion: float) -> float:
+    """Mt = F0 r cos α of the wire of an extension spring whose coils press on each other with F0, N mm.
+
+    The helix of radius r and pitch angle α has κ = cos²α/r and τ = sin α cos α/r, so that r = κ/(κ² + τ²).
+    """
+    return float(np.copysign(tension * curvature**2 / (curvature**2 + torsion**2) ** 1.5, torsion))
+
+
+def twist(
+    law: SectionLaw,
+    rule: DiskRule,
+    radius: float,
+    curvature: float,
+    curved: bool,
+    states: np.ndarray,
+    torque: float,
+    surface: np.ndarray | None = None,
+) -> np.ndarray:
+    """The states of a section under a torque alone, N mm, from its states without a resultant; arguments as of `coil`.
+
+    Raises:
+        SolveError: if the section cannot carry it.
+    """
+    wire = Wire.of_disk(law, rule, radius, curved, states, surface)
+    for k in range(1, TWISTS + 1):
+        wire.step(np.zeros(6), np.arange(6), np.array([0.0, 0.0, 0.0, torque * k / TWISTS, 0.0, 0.0]), curvature)
     return wire.states
 
 

@@ -12,7 +12,7 @@ from coilset.meshes.springs.placement import STRAIGHT
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.base.warning import Warning
-from coilset.model.manufacture.coiling import coil, grind
+from coilset.model.manufacture.coiling import coil, grind, twist, winding_torque
 from coilset.model.manufacture.peening import Layer, peen, peening_warnings
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.law.functions import HEATING, elasticity
@@ -32,12 +32,13 @@ START = "point_state", "surface_state"
 
 @dataclass(frozen=True)
 class _Past:
-    """What all sections of a rod went through: the law without time, that of the relief's intervals, the layer."""
+    """What all sections of a rod went through: the law without time, that of the relief, the layer, F0 in N."""
 
     law: SectionLaw
     coiled: bool
     relief: tuple[Parts, ...]
     layer: Layer | None
+    tension: float
 
 
 def give_past(rod: Rod, spring: object) -> float | None:
@@ -54,8 +55,9 @@ def give_past(rod: Rod, spring: object) -> float | None:
     Raises:
         InputError: if the wire cannot be coiled to the spring, not be relieved or not be peened so.
     """
-    if not isinstance(spring, SpringSpec) or not (spring.made_by or spring.peening):
+    if not _has_past(spring):
         return None
+    assert isinstance(spring, SpringSpec)
     past, state = _past(rod, spring), {name: rod.state[name].equilibrium for name in START}
     tight, problem = np.zeros((2, *rod.placement.curvature.shape)), None
     try:
@@ -64,6 +66,8 @@ def give_past(rod: Rod, spring: object) -> float | None:
         problem = str(error)
     problem = next((one for one in rod.mesh.comm.allgather(problem) if one), None)
     if problem:
+        if past.tension and not past.coiled:
+            raise InputError(f"the wire does not take this tension: {problem}", "spring.initial_tension")
         if not past.coiled:
             raise InputError(f"the section finds no balance with the layer: {problem}", "spring.peening")
         wanted = "'coiling' needs a wire that yields and keeps its shape"
@@ -89,8 +93,14 @@ def give_sections_past(
     Raises:
         SolveError: the past has no such state with this rule; on this rank only.
     """
-    if isinstance(spring, SpringSpec) and (spring.made_by or spring.peening):
+    if _has_past(spring):
+        assert isinstance(spring, SpringSpec)
         _through(sections, rule, state, _past(rod, spring), np.zeros((2, *sections.placement.curvature.shape)))
+
+
+def _has_past(spring: object) -> bool:
+    """Whether the wire is not free of stress before its first load."""
+    return isinstance(spring, SpringSpec) and bool(spring.made_by or spring.peening or spring.initial_tension)
 
 
 def _past(rod: Rod, spring: SpringSpec) -> _Past:
@@ -103,6 +113,7 @@ def _past(rod: Rod, spring: SpringSpec) -> _Past:
         bool(spring.made_by),
         _relief(rod, spring.relieved),
         None if spring.peening is None else _layer(rod, spring.peening),
+        spring.initial_tension or 0.0,
     )
 
 
@@ -186,6 +197,9 @@ def _through(
             tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
         if past.layer is not None:
             states = peen(past.law, rule, radius, curvature, sections.curved, states, past.layer, rim)
+        if past.tension:
+            torque = winding_torque(past.tension, curvature, torsion)
+            states = twist(past.law, rule, radius, curvature, sections.curved, states, torque, rim)
         if left is not None and len(states) > 1:
             states = grind(past.law, *left, radius, sections.curved, states[len(rule) :])
         if len(states) > 1:

@@ -186,9 +186,9 @@ def outside(spring: Spring, turns: np.ndarray, x: np.ndarray) -> float:
         turns: of the stations, shape (n,).
         x: their positions, shape (n, 3), mm.
     """
-    return float((np.hypot(x[:, 0], x[:, 1]) + 0.5 * spring.wire_diameter(turns)).max())
+    return float((np.hypot(x[:, 0], x[:, 1]) + 0.5 * spring.width * spring.wire_diameter(turns)).max())
 
 
 def inside(spring: Spring, turns: np.ndarray, x: np.ndarray) -> float:
     """The minimum distance of the wire's surface from the axis, mm; arguments as in `outside`."""
-    return float((np.hypot(x[:, 0], x[:, 1]) - 0.5 * spring.wire_diameter(turns)).min())
+    return float((np.hypot(x[:, 0], x[:, 1]) - 0.5 * spring.width * spring.wire_diameter(turns)).min())

@@ -57,6 +57,8 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         inside, 1
     ):  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
         against = "against the load" if inside * s["force_max_N"] < 0.0 else "with the load"
+    if s.get("turn_max_deg") is not None:
+        return _turned(s)
     return [
         Number("set", _within(s["set_mm"], s.get("estimated_set_error_mm"), "mm", 3), share),
         Number("free length", _within(after, s.get("estimated_set_error_mm"), "mm", 3), _lengths(s)),
@@ -67,8 +69,39 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         ),
         Number("maximum force", _within(s["force_max_N"], s.get("estimated_force_error_N"), "N", 1), _errors(s)),
         Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
+        *_tension(s),
         Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", with_unit(s["block_height_mm"], "mm", 2)),
+    ]
+
+
+def _tension(s: Mapping[str, Any]) -> list[Number]:
+    """Of a spring whose coils are wound onto each other."""
+    if s.get("initial_tension_N") is None:
+        return []
+    after = s["initial_tension_after_N"]
+    left = "" if after is None else f"{with_unit(after, 'N', 1)} after the last release"
+    rate = with_unit(s["open_rate_N_per_mm"], "N/mm", 3)
+    held = Number("initial tension", with_unit(s["initial_tension_N"], "N", 1), left)
+    return [held, Number("rate, coils open", rate)]
+
+
+def _turned(s: Mapping[str, Any]) -> list[Number]:
+    """Of a torsion spring: set in degrees first, then the residual bending stress, torque and rate."""
+    inside, outside = (with_unit(s[f"residual_bending_{side}_MPa"], "MPa", 1) for side in ("inside", "outside"))
+    rate = with_unit(s["turn_rate_Nmm_per_deg"], "N mm/°", 3)
+    after = s["turn_rate_after_Nmm_per_deg"]
+    return [
+        Number("set", with_unit(s["turn_set_deg"], "°", 2, "none"), f"of {s['turn_max_deg']:.4g}° of rotation"),
+        Number("residual bending stress", inside, f"inside of the coil; {outside} outside; positive in tension"),
+        Number("maximum torque", with_unit(s["torque_max_Nmm"], "N mm", 0)),
+        Number(
+            "maximum bending stress",
+            with_unit(s["max_bending_inside_MPa"], "MPa", 0),
+            f"inside of the coil; {with_unit(s['max_bending_outside_MPa'], 'MPa', 0)} outside",
+        ),
+        Number("rate", rate, "" if after is None else f"{with_unit(after, 'N mm/°', 3)} on release"),
+        Number("inner diameter", with_unit(s["inner_diameter_min_mm"], "mm", 2), "smallest, for an arbor"),
     ]
 
 

@@ -63,10 +63,10 @@ def _geometry(spring: Spring) -> list[tuple[str, str]]:
     t = np.linspace(0.0, spring.turns, 257)
     wire, mean = spring.wire_diameter(t), 2.0 * spring.mean_radius(t)
     return [
-        ("wire diameter d", _span(wire)),
+        ("wire diameter d" if spring.section is None else "wire height d", _span(wire)),
         ("mean diameter D", _span(mean)),
-        ("outer diameter De", _span(mean + wire)),
-        ("inner diameter Di", _span(mean - wire)),
+        ("outer diameter De", _span(mean + spring.width * wire)),
+        ("inner diameter Di", _span(mean - spring.width * wire)),
         ("turns, total and active", f"{spring.turns:g}, {spring.active_turns:.4g}"),
         ("direction of winding", "right" if spring.hand > 0 else "left"),
         ("length of the wire", f"{plain(spring.wire_length, 5)} mm"),

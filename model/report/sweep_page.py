@@ -41,15 +41,23 @@ def write_sweep_report(folder: str | Path) -> Path:
     panels = [panel for panel in (_deciding(data, of), _spread(data, of)) if panel is not None]
     counts = {status: int((data["status"] == status).sum()) for status in ("done", "failed", "missing")}
     names = [data[name].attrs["long_name"] for name in _list(data.attrs["inputs"])]
+    cases, sample = f"{data.attrs.get('cases', data.sizes['case']):,} cases", ""
+    if data.sizes["case"] < data.attrs.get("cases", 0):
+        sample = f"A sample of {data.sizes['case']:,} of the {cases}, evenly spread over the plan"
     return write_page(
         folder,
         "sweep",
         [("Which input matters most", panels)],
         {"columns": columns, "curves": _curves(data), "files": _files(data)},
-        title=f"{folder.resolve().name}: {data.sizes['case']} cases",
-        subtitle=f"{data.sizes['case']} cases; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')})",
+        title=f"{folder.resolve().name}: {cases}",
+        subtitle=f"{sample or cases}; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')})",
+        sample=sample,
         answer=[
-            Number("cases", f"{counts['done']} done", f"{counts['failed']} failed, {counts['missing']} missing"),
+            Number(
+                "cases of the sample" if sample else "cases",
+                f"{counts['done']} done",
+                f"{counts['failed']} failed, {counts['missing']} missing",
+            ),
             *(_range(data, name) for name in ANSWERS if name in data),
         ],
         warnings=_warnings(data),
@@ -63,7 +71,9 @@ def write_sweep_report(folder: str | Path) -> Path:
 
 def _columns(data: xr.Dataset, of: str) -> list[dict[str, Any]]:
     """Columns: number of the case, inputs, responses that are shown at first, and the others."""
-    found = [_column("case", "case", "", np.arange(1, data.sizes["case"] + 1), True, "")]
+    n = data.sizes["case"]
+    numbers = np.arange(n) * int(data.attrs.get("cases", n)) // n + 1 if n else np.zeros(0)
+    found = [_column("case", "case", "", numbers, True, "")]
     inputs = _list(data.attrs["inputs"])
     rest = [name for name in data.data_vars if data[name].dims == ("case",) and name not in SHOWN]
     first = [name for name, _, _ in _ranked(data, of)]

@@ -6,11 +6,13 @@ KINDS = {
     "buckling": "the spring is slender and may buckle without a guide",
     "coils slipped": "coils slip past each other",
     "contact mesh": "the mesh is coarse for contact",
+    "creep": "the load loss is extrapolated beyond the tests of creep",
     "duration": "the run takes long",
     "earlier name": "an entry has its earlier name",
     "endurance": "the stress range exceeds the fatigue data",
     "estimate": "the hardening of the wire is an estimate from its tensile strength",
     "gap": "the gaps between the coils are smaller than the standard requires",
+    "fatigue": "the finished spring has no safety against fatigue, or it could not be computed",
     "ground flat": "the flat of a ground end has an unusual length",
     "error": "the estimated error exceeds the accuracy required",
     "ground tip": "the tip of a ground end has an unusual thickness",
@@ -34,6 +36,8 @@ KINDS = {
     "unknown error": "the error of the steps could not be estimated",
     "unstable": "states are unstable",
     "wall": "the coils are solid before the calculated block height is reached",
+    "working length": "a working length is not reached",
+    "working set": "the spring sets further at its working lengths",
     "wire": "the wire diameter is outside the usual range",
 }
 

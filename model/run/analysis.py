@@ -3,7 +3,7 @@
 import logging
 import math
 from collections.abc import Callable, Sequence
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -75,6 +75,8 @@ class Analysis:
     Attributes:
         setup: Setup of the records.
         result: Result up to now.
+        threads: of each rank.
+        further: law, contacts and steps as given, by their names.
         system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
 
@@ -89,7 +91,8 @@ class Analysis:
         contacts: FurtherContacts | None = None,
         steps: type[StepSizes] = StepSizes,
     ) -> None:
-        self.case, self.comm = case, comm
+        self.case, self.comm, self.threads = case, comm, threads
+        self.further: dict[str, Any] = {"law": law, "contacts": contacts, "steps": steps}
         self._estimates = estimates and case.steps_error is not None and contacts is None
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring) if law is None else law
@@ -170,6 +173,7 @@ class Analysis:
         """
         try:
             if not self.result.snapshots:
+                self._settle_coils()
                 self.recorder.begin(self.initial_rate())
             touched()
             for number in range(self.program.number, len(self.case.loading)):
@@ -188,6 +192,19 @@ class Analysis:
         self.recorder.add_working(working_states(self))
         self.recorder.end(estimated(self) if self._estimates and self.result.steps else without_errors(self.result))
         return self.result
+
+    def _settle_coils(self) -> None:
+        """Let coils that are wound onto each other carry the tension of their wire, without a load on the spring.
+
+        Raises:
+            SolveError: if they find no equilibrium.
+        """
+        if "initial_tension" not in self.case.past:
+            return
+        outcome = self.continuation.attempt(self.control.to_force(0.0))
+        if not outcome.converged:
+            raise SolveError(f"the wound coils find no equilibrium without load: {outcome.reason}")
+        self.program.begin(0)
 
     def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:
         """Let heat flow for the time that the last step took; the step, with what that cost."""

@@ -34,6 +34,7 @@ from coilset.model.rod.rod import Rod
 from coilset.model.run.coarse_mesh import coarse_mesh_warnings
 from coilset.model.run.effort import Effort, machine_memory
 from coilset.model.runtime.threads import Threads
+from coilset.model.section.outline import Outlined
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_allowed, case_elastic, case_strength
@@ -70,6 +71,8 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     element = ELEMENTS[case.mesh.element]
     turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
     section, rule, automatic = case.mesh.section, case.section_rule, case.solver.control.steps.automatic
+    if spring.section is not None:
+        rule = Outlined(spring.section.scaled(1.0, spring.hand)).rule(len(rule))  # the binormal of a left one is down
     steps = sum(phase.count(automatic) for phase in case.loading)
     points = 2 * len(rule) * len(element.abscissae) // 2  # an effort is that of two sections
     effort = Effort.of(len(turns) - 1, points, steps, case.steps_error is not None)
@@ -82,9 +85,9 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     if case.mesh.axis == "chords":
         placement = chord_placement(spring, turns, chords, element.xi)
     else:
-        to_normal = section.kind != "plane" or bool(case.past)
+        to_normal = section.kind != "plane" or bool(case.past) or spring.section is not None
         placement = section_placement(spring, turns, chords, element.xi, to_normal)
-        refuse_sharp_bends(placement, radius, turns)
+        refuse_sharp_bends(placement, radius * (1.0 if spring.section is None else spring.section.high[0]), turns)
     rod = Rod(
         line,
         radius,
@@ -180,6 +183,7 @@ def build_setup(
         PENETRATION * 2.0 * least_radius,
         case.steps_error,
         *case_allowed(case, spring),
+        creep=law.creep.tests if law.creep else None,
     )
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
     elastic = case_elastic(case, law)
@@ -202,6 +206,7 @@ def build_setup(
         warnings=warnings,
         coiling_diameter=coiling_diameter,
         force_line=build_force_line(case),
+        wound_solid="initial_tension" in case.past,
         strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
     )
 

@@ -26,7 +26,7 @@ class FibreSections:
     Args:
         law: the material.
         parameters: of the law at the rod's temperature.
-        rule: quadrature of the disk.
+        rule: quadrature of the disk, or of the outline of a wire that is not round.
         radius: wire radius of each element, shape (cells,), mm.
         placement: Placement of the cells' sections.
         curved: whether they include the wire's curvature, see `shape`; else they are the thesis's, plane, of a straight
@@ -61,8 +61,11 @@ class FibreSections:
         self.components += self.law_over_time.columns(self.components[3:6])
         self.y, self.z = np.ascontiguousarray(rule.points.T)
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
-        self.ground = ground_sections(placement, radius, curved, lambda segment: segment.rule(len(rule)))
-        self.ground_rim = ground_sections(placement, radius, curved, rim_rule)
+        whole = rule.outline
+        self.ground = ground_sections(
+            placement, radius, curved, whole, lambda left: rule if left is whole else left.rule(len(rule))
+        )
+        self.ground_rim = ground_sections(placement, radius, curved, whole, rim_rule)
 
     def part(self, cells: slice) -> "FibreSections":
         """The sections of some of the cells."""
@@ -72,7 +75,7 @@ class FibreSections:
         return part
 
     def cut_points(self, cell: int, g: int) -> tuple[np.ndarray, np.ndarray] | None:
-        """`fibres` and `shape` (see `Ground`) of a ground section's points and of those on its surface; None: whole."""
+        """`fibres` and `shape` (see `Ground`) of a section's points and of those on its surface; None: a disk."""
         k = self.ground.which[cell, g]
         if k < 0:
             return None

@@ -5,19 +5,23 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import BarycentricInterpolator
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.section.integration import FIBRES
-from coilset.model.section.outline import WHOLE, Segment
+from coilset.model.section.outline import WHOLE, Outlined, Section, Segment
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.shape import SHAPE
 
+BENDS, NODES = 16, 5  # intervals of κ r in a unit, and nodes in each, between which the warping is interpolated
+DIGITS = 12  # of κ r, to which sections must agree to be the same
+
 
 class Ground(NamedTuple):
-    """The cut sections of a rod.
+    """The sections of a rod that are no disks: what grinding has cut, and all of a wire that is not round.
 
     Attributes:
-        which: number of each section among them, −1 if it is whole, shape (cells, sections).
+        which: number of each section among them, −1 if it is a disk, shape (cells, sections).
         fibres: y, z, u, v of the points, mm, and their areas, mm², see `integration`; shape (cut sections, 5, points).
         shape: g, a22, a23, a32, a33, see `shape`; shape (cut sections, 5, points).
     """
@@ -31,63 +35,96 @@ class Ground(NamedTuple):
         return self._replace(which=self.which[cells])
 
 
-def segments(placement: Placement) -> tuple[np.ndarray, list[Segment]]:
-    """`Ground.which`, and what is left of the sections that are cut."""
-    flat = placement.flat
-    cut = flat[..., 0] < WHOLE
-    which = np.where(cut, np.cumsum(cut.ravel()).reshape(cut.shape) - 1, -1)
-    return which, [Segment(float(level), (float(y), float(z))) for level, y, z in flat[cut]]
+def cut_sections(placement: Placement, outline: Outlined | None = None) -> tuple[np.ndarray, list[Section]]:
+    """Number of each section among those that are cut, −1 if it is whole, and what is left of these."""
+    flat, cut = placement.flat, placement.flat[..., 0] < WHOLE
+    planes = [(float(level), (float(y), float(z))) for level, y, z in flat[cut]]
+    if outline is None:
+        left: list[Section] = [Segment(*plane) for plane in planes]
+    else:
+        parts = [outline.cut(*plane) for plane in planes]
+        cut[cut] = [part is not outline for part in parts]
+        left = [part for part in parts if part is not outline]
+    return np.where(cut, np.cumsum(cut.ravel()).reshape(cut.shape) - 1, -1), left
 
 
 def section_points(rule: DiskRule, placement: Placement) -> tuple[np.ndarray, np.ndarray]:
     """Points of all sections in wire radii, (n, g, points, 2), and their shares of the disk, (n, g, points)."""
-    which, cut = segments(placement)
+    which, cut = cut_sections(placement, rule.outline)
     places = np.broadcast_to(rule.points, (*which.shape, *rule.points.shape)).copy()
     weights = np.broadcast_to(rule.weights, (*which.shape, len(rule))).copy()
-    for segment, at in zip(cut, np.argwhere(which >= 0), strict=True):
-        left = segment.rule(len(rule))
+    for section, at in zip(cut, np.argwhere(which >= 0), strict=True):
+        left = section.rule(len(rule))
         places[*at], weights[*at] = left.points, left.weights
     return places, weights
 
 
 def ground_sections(
-    placement: Placement, radius: np.ndarray, curved: bool, rule_of: Callable[[Segment], DiskRule]
+    placement: Placement,
+    radius: np.ndarray,
+    curved: bool,
+    outline: Outlined | None,
+    rule_of: Callable[[Section], DiskRule],
 ) -> Ground:
-    """The cut sections.
+    """The sections that are no disks.
 
     Args:
         placement: of all sections.
         radius: wire radius of each element, shape (cells,), mm.
         curved: whether the sections know the wire's curvature.
-        rule_of: points and weights that a segment gets.
+        outline: of a wire that is not round.
+        rule_of: points and weights that a section gets.
     """
-    which, cut = segments(placement)
-    if not cut:
+    which, cut = cut_sections(placement, outline)
+    bend = placement.curvature * radius[:, None] if curved else np.zeros(which.shape)
+    parts = [
+        cut_section(section, rule_of(section), float(radius[cell]), float(bend[cell, g]))
+        for section, (cell, g) in zip(cut, np.argwhere(which >= 0), strict=True)
+    ]
+    if outline is not None:
+        whole = which < 0
+        of_radius = np.broadcast_to(radius[:, None], which.shape)[whole]
+        kinds, number = np.unique(np.stack([of_radius, bend[whole].round(DIGITS)]), axis=1, return_inverse=True)
+        which[whole] = len(cut) + number.ravel()
+        parts += whole_sections(outline, rule_of(outline), *kinds)
+    if not parts:
         return Ground(which, np.empty((0, FIBRES, 0)), np.empty((0, SHAPE, 0)))
-    parts = []
-    for segment, (cell, g) in zip(cut, np.argwhere(which >= 0), strict=True):
-        bend = placement.curvature[cell, g] * radius[cell] if curved else 0.0
-        parts.append(cut_section(segment, rule_of(segment), float(radius[cell]), float(bend)))
     return Ground(which, *(np.array(part) for part in zip(*parts, strict=True)))
 
 
-def cut_section(segment: Segment, rule: DiskRule, radius: float, bend: float) -> tuple[np.ndarray, np.ndarray]:
+def whole_sections(
+    outline: Outlined, rule: DiskRule, radius: np.ndarray, bend: np.ndarray
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """`cut_section` of an outline for many radii and κ r, shapes (n,), by polynomials in κ r between every BENDS."""
+    found, tables = [], {}
+    for r, b in zip(radius.tolist(), bend.tolist(), strict=True):
+        cell = int(b * BENDS)
+        if cell not in tables:
+            nodes = (cell + 0.5 - 0.5 * np.cos(np.pi * np.arange(NODES) / (NODES - 1))) / BENDS
+            both = np.array([np.concatenate(cut_section(outline, rule, 1.0, float(node))) for node in nodes])
+            tables[cell] = BarycentricInterpolator(nodes, both)
+        fibres, shape = np.split(tables[cell](b), [FIBRES])
+        found.append((fibres * np.array([r, r, r, r, r * r])[:, None], shape))
+    return found
+
+
+def cut_section(section: Section, rule: DiskRule, radius: float, bend: float) -> tuple[np.ndarray, np.ndarray]:
     """`Ground.fibres` and `Ground.shape` of one section.
 
     Args:
-        segment: what is left of it.
+        section: Section.
         rule: its points and weights.
         radius: of the wire, mm.
         bend: κ r, 0 for a section that ignores it.
     """
     y, z = rule.points.T
-    (a22, a23, by_twist_12), (a32, a33, by_twist_13) = segment.warping(bend).shear(rule.points)
+    (a22, a23, by_twist_12), (a32, a33, by_twist_13) = section.warping(bend).shear(rule.points)
     levers = radius * np.array([y, z, by_twist_13, -by_twist_12])
     areas = math.pi * radius**2 * rule.weights
     return np.array([*levers, areas]), np.array([1.0 - bend * y, a22, a23, a32, a33])
 
 
-def rim_rule(segment: Segment) -> DiskRule:
-    """Points on a segment's surface; they weigh nothing."""
-    places = segment.rim()
+def rim_rule(section: Section) -> DiskRule:
+    """Points on a section's surface; they weigh nothing."""
+    places = section.rim()
     return DiskRule(places, np.zeros(len(places)), "surface")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coilset.meshes.boundary import Boundary
 from coilset.model.base.errors import InputError
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import SURFACE_POINTS, DiskRule, rim
@@ -22,8 +23,11 @@ DEEPEST = -0.999  # the wire that is left there is half a thousandth of its diam
 FINE = 24  # points in each direction, for integrals of polynomials
 SLENDERNESS = 1.6  # points over the height for each of those across it
 DEGREE = 6  # of the polynomials of the warping: the torsional stiffness is 2e-4 too high at half of a disk
-RINGS, ALONG = 12, 24  # Gauss points from the centre line to the surface, and along each piece of it
-FINE_RIM = 400  # points on each piece, between which the surface is interpolated
+RINGS, ALONG, LEAST_ALONG = 12, 24, 6  # Gauss points from the centre line to the surface, and along pieces of it
+LEAST_RINGS = 3  # of the points that carry the state
+ACROSS_RING = 2.5  # square of the points along a ring over all: 20 of 160
+ON_RAY = 1e-9  # of a side, by which a ray through its end may miss it
+LEAST_VIEW = 1e-3  # of the greatest |b × b′| along a boundary: below it its origin is too near to it or outside
 
 
 class Section(ABC):
@@ -127,68 +131,101 @@ class Segment(Section):
 
 
 class Outlined(Section):
-    """What a closed curve encloses that every ray from the wire's centre line crosses once.
+    """What a closed curve encloses that every ray from a point inside it crosses once.
 
-    With its points b(t) the section is p = ρ b(t), 0 < ρ < 1, and dA = ρ |b × b′| dρ dt: rings of its own shape.
+    With the curve's points b(t) from there the section is p = ρ b(t), k < ρ < 1, and dA = ρ |b × b′| dρ dt: rings of
+    its own shape. k is 0, or the size of a tube's hole.
 
     Args:
-        outline: Outline, mm, as a slice takes it.
-        radius: of the wire, mm, by which lengths are divided.
+        boundary: Boundary, in wire radii; of a spring's wire, half of its height.
 
     """
 
-    def __init__(self, outline: "Outline", radius: float) -> None:
-        self._outline, self._size = outline, np.array([-1.0, 1.0]) / radius  # ξ points away from the coil's axis
+    def __init__(self, boundary: Boundary) -> None:
+        self.boundary = boundary
+        b, slope, dt = boundary.gauss(ALONG)
+        area = dt * _cross(b, slope)
+        centre = ((b * area[:, None]).sum(axis=0) / 3.0) / (0.5 * area.sum())
+        # what a plane leaves of a section may have the wire's centre line on its edge or beside it
+        self._middle = np.zeros(2) if (area > LEAST_VIEW * np.abs(area).max()).all() else centre
+        self._seen = boundary if not self._middle.any() else boundary.moved(-self._middle)
+        self._sectors = self._seen.sectors
+        self._cuts: dict[tuple[float, float, float], Outlined] = {}
 
-    def _boundary(self, along: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """As `meshes.section.boundary`, in wire radii."""
-        from coilset.meshes.section import boundary  # gmsh: not where sections are round
+    @classmethod
+    def of(cls, outline: "Outline", radius: float) -> "Outlined":
+        """Of an outline as a slice takes it, and the wire's radius, mm, by which lengths are divided."""
+        return cls(Boundary.of(outline).scaled(1.0 / radius, 1.0 / radius))
 
-        b, slope, dt = boundary(self._outline, along)
-        return b * self._size, slope * self._size, dt
+    def cut(self, level: float, normal: tuple[float, float]) -> "Outlined":
+        """What a plane leaves of it, see `Segment`; itself if nothing is cut away."""
+        left = self.boundary.cut(max(level, DEEPEST), np.array(normal))
+        if left is self.boundary:
+            return self
+        return self._cuts.setdefault((level, *normal), Outlined(left))  # points and surface need the same
 
-    def product(self, rings: int, along: int) -> tuple[np.ndarray, np.ndarray]:
-        """Gauss's points on rings, with so many on each piece of the outline, and their weights, as in `fine`.
+    def _product(self, rings: int, along: list[int]) -> tuple[np.ndarray, np.ndarray]:
+        """Gauss's points on rings, with a number on each piece of the outline, and their weights, as in `fine`.
 
         Raises:
             InputError: if some ray crosses the outline twice.
         """
-        b, slope, dt = self._boundary(along)
-        area = (b[:, 0] * slope[:, 1] - b[:, 1] * slope[:, 0]) * dt
-        if area.min() * area.max() < 0.0:
+        b, slope, dt = self._seen.at(along)
+        area = dt * _cross(b, slope)
+        if area.min() < 0.0:
             problem = (
                 "a ray from the wire's centre line crosses the outline twice; give η and ξ from a point further inside"
             )
             raise InputError(problem, "section.points")
-        s, w = np.polynomial.legendre.leggauss(rings)
-        ρ = 0.5 * (s + 1.0)
-        return (ρ[:, None, None] * b).reshape(-1, 2), np.outer(0.5 * w * ρ, np.abs(area)).ravel() / np.pi
+        first = np.cumsum([0, *along[:-1]])
+        area *= np.repeat(self._sectors / np.add.reduceat(area, first), along)
+        s, w = _gauss(rings)
+        k = self.boundary.hole
+        ρ = k + 0.5 * (1.0 - k) * (s + 1.0)
+        places = self._middle + (ρ[:, None, None] * b).reshape(-1, 2)
+        return places, np.outer(0.5 * (1.0 - k) * w * ρ, area).ravel() / np.pi
 
     @cached_property
     def fine(self) -> tuple[np.ndarray, np.ndarray]:
         """See Section."""
-        return self.product(RINGS, ALONG)
+        pieces = self._seen.pieces
+        straight = max(LEAST_ALONG, ALONG // len(pieces))
+        return self._product(RINGS, [straight if len(piece.x) == 2 else ALONG for piece in pieces])
 
     def rule(self, points: int) -> DiskRule:
-        """See Section; points that no product takes weigh nothing."""
-        pieces = len(self.product(1, 1)[1])
-        along = max(1, round(np.sqrt(3.0 * points) / pieces))  # about as far from each other along a ring as across it
-        rings = max(1, points // (pieces * along))
-        places, weights = self.product(rings, along)
+        """See Section; points that no product takes weigh nothing.
+
+        Raises:
+            InputError: if the outline has more pieces than points can be spared for.
+        """
+        share = self._seen.lengths / self._seen.lengths.sum()
+        around = np.sqrt(ACROSS_RING * points)  # about as far from each other along a ring as across it
+        least = [1 if len(piece.x) == 2 else 2 for piece in self._seen.pieces]
+        along = [max(some, round(around * part)) for some, part in zip(least, share, strict=True)]
+        rings = points // sum(along)
+        if rings < LEAST_RINGS:
+            problem = (
+                f"an outline of {len(along)} straight or smooth pieces needs {LEAST_RINGS * sum(along)} points in its "
+                f"section, not {points}; give mesh.section more rings or angles, or the outline fewer points, or smooth"
+            )
+            raise InputError(problem, "spring.wire.outline")
+        places, weights = self._product(rings, along)
         rest = points - len(weights)
-        if rest < 0:
-            raise ValueError(f"an outline of {pieces} pieces needs at least as many points, not {points}")
         places = np.concatenate([places, np.tile(weights @ places / weights.sum(), (rest, 1))])
-        return DiskRule(places, np.concatenate([weights, np.zeros(rest)]), f"outline {rings} × {pieces} × {along}")
+        name = f"outline {rings} × {sum(along)}"
+        return DiskRule(places, np.concatenate([weights, np.zeros(rest)]), name, self)
 
     def rim(self) -> np.ndarray:
-        """See Section: at equal angles from the y axis."""
-        b = self._boundary(FINE_RIM)[0]
-        angle = np.arctan2(b[:, 1], b[:, 0])
-        at = 2.0 * np.pi * np.arange(SURFACE_POINTS) / SURFACE_POINTS
-        order = np.argsort(angle)
-        distance = np.interp(at, angle[order], np.linalg.norm(b, axis=1)[order], period=2.0 * np.pi)
-        return distance[:, None] * np.stack([np.cos(at), np.sin(at)], axis=1)
+        """See Section: where rays at equal angles from the y axis cross the curve's polygon."""
+        corner = self._seen.polygon
+        side = np.roll(corner, -1, axis=0) - corner
+        angle = 2.0 * np.pi * np.arange(SURFACE_POINTS) / SURFACE_POINTS
+        ray = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        across = _cross(ray[:, None], side)
+        across = np.where(across > 0.0, across, np.nan)
+        place = _cross(corner, ray[:, None]) / across  # along the side, 0 … 1 if the ray crosses it
+        distance = np.where((place >= -ON_RAY) & (place <= 1.0 + ON_RAY), _cross(corner, side) / across, -np.inf)
+        return self._middle + distance.max(axis=1)[:, None] * ray
 
     def basis(self, degree: int) -> Basis:
         """See Section."""
@@ -253,6 +290,10 @@ class Warping:
 def _warping(section: Section, bend: float) -> Warping:
     """Points of the section and those on its surface need the same, and so do runs of springs with the same ends."""
     return Warping(section, bend)
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 @cache

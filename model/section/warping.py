@@ -29,7 +29,7 @@ from coilset.model.material.point_law import solid_point
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import condense, find_warping, strain_operator
-from coilset.model.section.ground import segments
+from coilset.model.section.ground import cut_sections
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 
@@ -78,12 +78,14 @@ class WarpingSections:
         self.radius, self.placement = radius, placement
         self.law_over_time = LawOverTime(law, parameters, temperature)
         self.components += self.law_over_time.columns(self.components[6:12])
-        basis = Basis.of_disk(degree)
-        self.which, cut = segments(placement)
+        outline = rule.outline
+        basis = Basis.of_disk(degree) if outline is None else outline.basis(degree)
+        self.which, cut = cut_sections(placement, outline)
         left, bases = [one.rule(len(rule)) for one in cut], [one.basis(degree) for one in cut]
         self.points = _with_polynomials([rule.points, *(one.points for one in left)], [basis, *bases])
         self.weights = np.array([rule.weights, *(one.weights for one in left)])
-        self.rim = _with_polynomials([rim(), *(one.rim() for one in cut)], [basis, *bases])
+        whole = rim() if outline is None else outline.rim()
+        self.rim = _with_polynomials([whole, *(one.rim() for one in cut)], [basis, *bases])
         self.unknowns = 3 + 3 * self.points[2].shape[3]
         # of each thread: sections brought up to date, local iterations on the way
         self.iterations = np.zeros((self.threads.number, 2), dtype=np.int64)

@@ -8,6 +8,7 @@ import numpy as np
 from coilset.meshes.section import SectionMesh, section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
@@ -110,6 +111,7 @@ class SliceAnalysis:
             raise InputError(problem, f"spring.{entry}")
         self._check_targets()
         self.law = case_law(case, self.spring)
+        outline = outline or _wire(case)
         d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
         self.coil, self.turns = Coil(0.5 * D, pitch), self.spring.turns
@@ -304,6 +306,21 @@ def _fits(extent: tuple[float, float, float, float], diameter: float) -> None:
             f"{diameter:g} mm, but the section is {height:.5g} mm high along the spring; give its height",
             "spring.wire_diameter",
         )
+
+
+def _wire(case: Case) -> Outline | None:
+    """The outline of a case's wire that is not round.
+
+    Raises:
+        InputError: if it is hollow or turned.
+    """
+    spec = case.spring.wire if isinstance(case.spring, SpringSpec) else None
+    if spec is None:
+        return None
+    if spec.tube is not None or spec.angle:
+        entry = "tube" if spec.tube is not None else "angle"
+        raise InputError("a slice is a solid section that is not turned; use 'coilset solve'", f"spring.wire.{entry}")
+    return spec.drawn()
 
 
 def _across(section: SectionMesh) -> tuple[float, float]:

@@ -5,12 +5,15 @@ from math import inf, pi, sqrt
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.standards.rate import WireNumbers
 from coilset.model.standards.wires.steel import STEEL
 
 SEATING = 0.5  # EN 13906-1: seating coefficient ν of ends guided by parallel seats
 
 
-def critical_travel(length: float, diameter: float, modulus_ratio: float, seating: float = SEATING) -> float:
+def critical_travel(
+    length: float, diameter: float, bending: float, seating: float = SEATING, shear: float | None = None
+) -> float:
     """Travel at which a cylindrical spring buckles, mm; infinite if it never does.
 
         s_K = L0 · 0.5/(1 − G/E) · [1 − √(1 − (1 − G/E)/(0.5 + G/E) · (π D/(ν L0))²)]
@@ -21,15 +24,18 @@ def critical_travel(length: float, diameter: float, modulus_ratio: float, seatin
 
     buckles, after Haringx, when F (1 + F/S) = π² B/(ν L)². With C/S = G/E and B/C = D²/(4 (½ + G/E)) of the free spring
     this is (1 − G/E) ξ² − ξ + (π D/(ν L0))²/(4 (½ + G/E)) = 0, whose smaller root is the standard's, with the square.
+    G/E stands twice for G J/(2 E I): with C/B = 4 (½ + G J/(2 E I₂))/D², where wire is bent across the plane of the
+    coil, and with C/S = G J/(2 E I₃), where it is bent in that plane; of round wire J = 2 I.
 
     Args:
         length: free length L0, mm.
         diameter: mean diameter D, mm.
-        modulus_ratio: G/E.
+        bending: G/E, or G J/(2 E I₂) of wire that is not round.
         seating: ν of the standard, 0.5 for ends on parallel guided seats, 2 for one free end.
+        shear: G J/(2 E I₃); None: as bending.
     """
-    γ = 1 - modulus_ratio
-    under_root = 1 - γ / (0.5 + modulus_ratio) * (pi * diameter / (seating * length)) ** 2
+    γ = 1 - (bending if shear is None else shear)
+    under_root = 1 - γ / (0.5 + bending) * (pi * diameter / (seating * length)) ** 2
     return length * 0.5 / γ * (1 - sqrt(under_root)) if under_root >= 0 else inf
 
 
@@ -44,4 +50,8 @@ def buckling_travel(
         seating: ν of the standard, 0.5 for ends on parallel guided seats, 2 for one free end.
     """
     diameter = 2 * float(np.min(spring.mean_radius(spring.breaks)))
+    if spring.section is not None:
+        wire = WireNumbers.of(spring.section, float(spring.wire_diameter(0.5 * spring.turns)), diameter)
+        bending, shear = wire.buckling_ratios(modulus_ratio)
+        return critical_travel(spring.free_length, diameter, bending, seating, shear)
     return critical_travel(spring.free_length, diameter, modulus_ratio, seating)

@@ -9,7 +9,7 @@ from coilset.model.case import Case
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
 from coilset.model.standards.found import Found
-from coilset.model.standards.sheet import Sheet, pulls, working_lengths
+from coilset.model.standards.sheet import Sheet, pulled_lengths, pulls, rotations, working_lengths
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic, case_law
 
@@ -63,8 +63,12 @@ def case_sheet(
         law.first_yield(case.temperature),
         law.data.tensile_strength if isinstance(case.material, str) else None,
         pulls(case, spring),
+        rotations(case, spring),
+        getattr(case.spring, "initial_tension", None) or 0.0,
     )
     if lengths:
         return made
+    if made.pulled:
+        return replace(made, lengths=tuple(pulled_lengths(case, spring)))
     planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
     return replace(made, lengths=tuple(planned))

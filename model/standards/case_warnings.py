@@ -82,7 +82,7 @@ def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
     except InputError:
         return []
     named = None if isinstance(case.material, str) else wire(case.material.wire)
-    rate = en13906.rate(elastic.shear_modulus, cylinder.d, cylinder.D, cylinder.n)
+    rate = en13906.rate(elastic.shear_modulus, cylinder.of_rate, cylinder.D, cylinder.n)
     lengths = working_lengths(case.targets, cylinder.length, rate, cylinder.solid)
     to_block = [cylinder.solid] if any(phase.to == "block" for phase in case.targets) else []
     return sheet_warnings(Sheet(cylinder, elastic, spring.wire_length, named, lengths), to_block)

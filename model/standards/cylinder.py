@@ -8,6 +8,8 @@ import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
+from coilset.model.standards import en13906
+from coilset.model.standards.rate import WireNumbers
 
 CylinderEnds = Literal["open", "closed", "closed and ground", "mixed"]
 SAME = 1e-9  # maximum relative change of coil and wire diameter along a cylinder, and of a constant pitch
@@ -28,6 +30,7 @@ class Cylinder:
         ends: form of both ends; `mixed` if they differ.
         solid: block length of the geometry, with every coil touching the next.
         pitches: of the active turns at the middles of equal parts, if the pitch of the body varies; else empty.
+        wire: numbers of a wire that is not round, whose height is d; None of round wire.
     """
 
     d: float
@@ -39,6 +42,7 @@ class Cylinder:
     ends: CylinderEnds
     solid: float
     pitches: tuple[float, ...] = ()
+    wire: WireNumbers | None = None
 
     @classmethod
     def of(cls, spring: Spring) -> "Cylinder":
@@ -69,6 +73,7 @@ class Cylinder:
             ends,
             spring.block_height,
             _pitches(spring),
+            None if spring.section is None else WireNumbers.of(spring.section, float(np.mean(d)), float(np.mean(D))),
         )
 
     def series_force(self, travel: float, turn_rate: float) -> float:
@@ -91,6 +96,31 @@ class Cylinder:
     def index(self) -> float:
         """w = D/d."""
         return self.D / self.d
+
+    @property
+    def of_rate(self) -> float:
+        """Diameter of the round wire of the same torsional stiffness, mm."""
+        return self.wire.of_rate if self.wire else self.d
+
+    @property
+    def of_stress(self) -> float:
+        """Diameter of the round wire with the same stress by a torque, mm."""
+        return self.wire.of_stress if self.wire else self.d
+
+    @property
+    def of_mass(self) -> float:
+        """Diameter of the round wire of the same area, mm."""
+        return self.wire.of_mass if self.wire else self.d
+
+    @property
+    def correction(self) -> float:
+        """Greatest shear stress in the coil over the nominal one."""
+        return self.wire.correction if self.wire else en13906.stress_correction(self.index)
+
+    def buckling_travel(self, modulus_ratio: float) -> float:
+        """Travel at which it buckles between parallel seats, mm, with G/E; infinite if it never does."""
+        bending, shear = self.wire.buckling_ratios(modulus_ratio) if self.wire else (modulus_ratio, None)
+        return en13906.critical_travel(self.length, self.D, bending, shear=shear)
 
     @property
     def pitch_angle(self) -> float:

@@ -1,14 +1,18 @@
-"""Compression springs of round wire according to EN 13906-1: one function per formula, with its source or derivation.
+"""Springs of round wire according to EN 13906: one function per formula, with its source or derivation.
+
+Compression springs (part 1), extension springs (part 2), whose body is the same, and torsion springs (part 3).
 
 Symbols of the standard: d wire diameter, D mean coil diameter, w = D/d, n active and n_t all turns, s travel, F force,
 L0 free and Lc block length. N, mm, MPa, kg; frequency in Hz.
 """
 
-from math import pi, sqrt
+from math import degrees, pi, sqrt
 
 from coilset.model.standards.buckling import critical_travel
 
 __all__ = [
+    "bending_correction",
+    "bending_stress",
     "block_length",
     "critical_travel",
     "energy",
@@ -19,6 +23,8 @@ __all__ = [
     "rate",
     "stress",
     "stress_correction",
+    "turn_rate",
+    "turned_diameter",
     "wire_length",
 ]
 
@@ -127,3 +133,32 @@ def outer_diameter_growth(d: float, D: float, pitch: float, nu: float = 0.25) ->
         nu: Poisson's ratio.
     """
     return (pitch**2 - pitch * d / (1 + nu) - d**2 * nu / (1 + nu)) / (pi**2 * D)
+
+
+def turn_rate(young_modulus: float, d: float, D: float, n: float) -> float:
+    """Rate of a torsion spring, R = E d⁴/(3667 D n), N mm/°.
+
+    The bending moment M is the same along the wire: M π D n/(E I) is the rotation, I = π d⁴/64; 64 · 180/π = 3667.
+    """
+    return young_modulus * d**4 / (64.0 * degrees(1.0) * D * n)
+
+
+def bending_stress(torque: float, d: float) -> float:
+    """Uncorrected bending stress σ = 32 M/(π d³), MPa: that at the surface of a straight wire."""
+    return 32.0 * torque / (pi * d**3)
+
+
+def bending_correction(w: float) -> float:
+    """Stress factor q at the inside of a curved wire in bending, (4 w² − w − 1)/(4 w (w − 1)) (Wahl).
+
+    By Winkler's curved beam of circular section; the fit for q in part 3 of the standard was found in no open source.
+    """
+    return (4.0 * w**2 - w - 1.0) / (4.0 * w * (w - 1.0))
+
+
+def turned_diameter(D: float, n: float, turn: float) -> float:
+    """Mean diameter of a torsion spring after a rotation, degrees, positive in the winding direction, mm.
+
+    The length of the wire stays: D n = D′ (n + α/360°).
+    """
+    return D * n / (n + turn / 360.0)

@@ -1,18 +1,99 @@
-"""The rate of a spring from the torsion of its wire alone."""
+"""The torsion of the wire: the rate of a spring by it alone, and the round wires that stand for one that is not round.
 
+EN 13906-1 reads the factors of rectangular wire off diagrams. Here they are computed for any section: its torsion
+constant J and section modulus W of a straight wire (Saint-Venant), and the greatest shear on the surface of a coil,
+without pitch, over F D/(2 W). With d⁴ = 32 J/π, d³ = 16 W/π and d² = 4 A/π the formulas of round wire hold.
+"""
+
+from dataclasses import dataclass
+from math import pi
 from typing import Literal
 
 import numpy as np
 
+from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.section.outline import Outlined, Section
+
+AROUND = 720  # points on the surface at which the greatest shear is sought
+
+
+@dataclass(frozen=True)
+class WireNumbers:
+    """Of a wire that is not round; lengths in mm.
+
+    Attributes:
+        width: across the coil's axis.
+        torsion: J, mm⁴.
+        modulus: W, torque over the greatest shear stress of a straight wire, mm³.
+        area: A, mm².
+        correction: greatest shear stress in the coil over F D/(2 W).
+        out_of_plane, in_plane: second moments of area ∫ z² dA and ∫ y² dA about the middle, mm⁴.
+    """
+
+    width: float
+    torsion: float
+    modulus: float
+    area: float
+    correction: float
+    out_of_plane: float
+    in_plane: float
+
+    @classmethod
+    def of(cls, boundary: Boundary, height: float, mean_diameter: float) -> "WireNumbers":
+        """Of a section in half its height, a height and a mean diameter of the coil, mm."""
+        section, r = Outlined(boundary), 0.5 * height
+        places, weights = section.fine
+        second = pi * r**4 * weights @ (places - weights @ places / weights.sum()) ** 2
+        straight = _greatest(section, boundary, 0.0, np.array([0.0, 0.0, 1.0]))
+        bend = height / mean_diameter
+        coiled = _greatest(section, boundary, bend, np.array([0.0, bend, 1.0]))
+        return cls(
+            width=r * float(np.ptp(boundary.polygon[:, 0])),
+            torsion=section.warping().torsion * r**4,
+            modulus=r**3 / straight,
+            area=r**2 * boundary.area,
+            correction=coiled / straight,
+            out_of_plane=float(second[1]),
+            in_plane=float(second[0]),
+        )
+
+    @property
+    def of_rate(self) -> float:
+        """Diameter of the round wire of the same torsional stiffness, mm."""
+        return float((32.0 * self.torsion / pi) ** 0.25)
+
+    @property
+    def of_stress(self) -> float:
+        """That of the same stress by a torque, mm."""
+        return float((16.0 * self.modulus / pi) ** (1.0 / 3.0))
+
+    @property
+    def of_mass(self) -> float:
+        """That of the same area, mm."""
+        return float((4.0 * self.area / pi) ** 0.5)
+
+    def buckling_ratios(self, modulus_ratio: float) -> tuple[float, float]:
+        """G J/(2 E I) of bending across and in the plane of the coil, each G/E of round wire; see `critical_travel`."""
+        half = 0.5 * modulus_ratio * self.torsion
+        return half / self.out_of_plane, half / self.in_plane
+
+
+def _greatest(section: Section, boundary: Boundary, bend: float, load: np.ndarray) -> float:
+    """Greatest shear on the surface for Q2, Q3 and Mt/r, with r = 1."""
+    warping, places = section.warping(bend), boundary.points(AROUND)
+    strain = np.linalg.solve(pi * warping.stiffness, load)
+    shear = np.einsum("ijp,j->ip", warping.shear(places), strain) / (1.0 - bend * places[:, 0])
+    return float(np.hypot(*shear).max())
 
 
 def torsion_rate(spring: Spring, shear_modulus: float) -> float:
     """Initial rate for torsion of the wire alone and small pitch, N/mm.
 
     Castigliano's `1/R = 64/G ∫ r³/d⁴ dt` over the active turns: R = G d⁴/(8 D³ n) of EN 13906-1 for a cylinder, and
-    R = G d⁴/(2 n (D1 + D2)(D1² + D2²)) for a cone (Wahl, Mechanical Springs, chapter on conical springs).
+    R = G d⁴/(2 n (D1 + D2)(D1² + D2²)) for a cone (Wahl, Mechanical Springs, chapter on conical springs). Of wire that
+    is not round π d⁴/32 is its torsion constant.
 
     Args:
         spring: `Spring`.
@@ -21,7 +102,10 @@ def torsion_rate(spring: Spring, shear_modulus: float) -> float:
     start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
     breaks = np.concatenate([[start], spring.breaks[(spring.breaks > start) & (spring.breaks < end)], [end]])
     compliance = functions.integral(lambda t: spring.mean_radius(t) ** 3 / spring.wire_diameter(t) ** 4, breaks).sum()
-    return float(shear_modulus / (64 * compliance))
+    rate = float(shear_modulus / (64 * compliance))
+    if spring.section is None:
+        return rate
+    return rate * Outlined(spring.section).warping().torsion / (0.5 * np.pi)  # J of a disk of radius 1
 
 
 def pitch_compliance(angle: float, nu: float, ends: Literal["turning", "held"] = "turning") -> float:

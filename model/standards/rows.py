@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from math import degrees, isfinite, sqrt
 
 from coilset.model.standards import en13906, en15800
-from coilset.model.standards.buckling import critical_travel
 from coilset.model.standards.rate import pitch_compliance
 from coilset.model.standards.sheet import AT_BLOCK, Sheet
 from coilset.model.standards.wires.law import poisson_ratio
@@ -38,8 +37,11 @@ class Row:
 
 def sections(sheet: Sheet) -> list[tuple[str, list[Row]]]:
     """All rows under their headings; headings without rows are omitted."""
+    dimensions = ("Dimensions", list(_dimensions(sheet)))
     if sheet.pulled:
-        return [("Dimensions", list(_dimensions(sheet))), ("Rate", list(_pulled(sheet)))]
+        return [dimensions, ("Extension spring, EN 13906-2", list(_pulled(sheet)))]
+    if sheet.turns_to:
+        return [dimensions, ("Torsion spring, EN 13906-3", list(_turned(sheet)))]
     parts = {
         "Dimensions": _dimensions,
         "Rate, block and buckling": _spring,
@@ -57,15 +59,22 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     after, set_mm = sheet.at_run("free_length_after_mm"), sheet.at_run("set_mm")
     nominal = en13906.wire_length(s.D, s.turns)
     helix = sheet.helix if sheet.found else None
-    mass = None if helix is None else 1e3 * en13906.mass(ρ, s.d, helix)
-    yield Row("wire diameter d", s.d, "mm", "", GIVEN)
+    mass = None if helix is None else 1e3 * en13906.mass(ρ, s.of_mass, helix)
+    if s.wire is None:
+        yield Row("wire diameter d", s.d, "mm", "", GIVEN)
+    else:
+        yield Row("wire height d", s.d, "mm", "along the spring", GIVEN)
+        yield Row("wire width", s.wire.width, "mm", "", GIVEN)
+        yield Row("torsion constant J", s.wire.torsion, "mm⁴", "Saint-Venant, computed", DERIVED)
+        yield Row("section modulus W", s.wire.modulus, "mm³", "T/τ of straight wire, computed", DERIVED)
     yield Row("mean diameter D", s.D, "mm", "", GIVEN)
     yield Row("spring index w", s.index, "", "D/d", DERIVED)
     yield Row("active turns n", s.n, "", f"of {s.turns:g}, ends {s.ends}", GIVEN)
     yield Row("free length L0", s.length, "mm", "", GIVEN, after, f"set {set_mm:.4g} mm" if after else "")
     yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, "the helix is longer by 1/cos α")
-    yield Row("mass m", 1e3 * en13906.mass(ρ, s.d, nominal), "g", "ρ π d² l/4", DERIVED, mass, "as the wire length")
-    if sheet.pulled:
+    formula = "ρ A l" if s.wire else "ρ π d² l/4"
+    yield Row("mass m", 1e3 * en13906.mass(ρ, s.of_mass, nominal), "g", formula, DERIVED, mass, "as the wire length")
+    if sheet.pulled or sheet.turns_to or s.wire:  # the formula of the growth is for round wire
         return
     growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
     grown = sheet.found.growth if sheet.found and sheet.was_at_block else None
@@ -87,13 +96,61 @@ def _rate(sheet: Sheet) -> Row:
     if finished is not None:
         why = "of the finished spring, between 30 and 70 % of its travel"
     found = first if finished is None else finished
-    return Row("rate R", sheet.rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, found, why)
+    formula = "4 G J/(π D³ n)" if sheet.spring.wire else "G d⁴/(8 D³ n)"
+    return Row("rate R", sheet.rate, "N/mm", formula, DERIVED, found, why)
 
 
 def _pulled(sheet: Sheet) -> Iterator[Row]:
-    """Of a spring that the load program pulls."""
-    yield _rate(sheet)
-    yield Row("all others", None, why="EN 13906-1 and EN 15800 are for compression springs; this one is pulled")
+    """Of a spring that the load program pulls, EN 13906-2: its body is that of a compression spring."""
+    s, k = sheet.spring, en13906.stress_correction(sheet.spring.index)
+    opened = sheet.at_run("open_rate_N_per_mm")
+    if opened is None:
+        yield _rate(sheet)
+    else:
+        yield Row("rate R", sheet.rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, opened, "once the coils are open")
+    if sheet.tension:
+        found, after = sheet.at_run("initial_tension_N"), sheet.at_run("initial_tension_after_N")
+        why = "" if after is None else f"{after:.4g} N after the last release"
+        yield Row("initial tension F0", sheet.tension, "N", "", GIVEN, found, why)
+        τ0 = en13906.stress(sheet.tension, s.d, s.D)
+        yield Row("  stress τ0", τ0, "MPa", "8 D F0/(π d³)", DERIVED)
+    if s.wire:
+        yield Row("all others", None, why="EN 13906-2 is for round wire")
+        return
+    formula = "F0 + R (L − L0)" if sheet.tension else "R (L − L0)"
+    for length in sheet.lengths:
+        force = sheet.tension + sheet.rate * (length - s.length)
+        pull = sheet.found.force_at(length) if sheet.found else None
+        found = None if pull is None else abs(pull)
+        τ = en13906.stress(force, s.d, s.D)
+        yield Row(f"force at {length:.5g} mm", force, "N", formula, DERIVED, found, "first pull")
+        yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED)
+        yield Row("  corrected stress τk", k * τ, "MPa", "k τ", TWO)
+
+
+def _turned(sheet: Sheet) -> Iterator[Row]:
+    """Of a spring that the load program turns, EN 13906-3."""
+    if sheet.spring.wire:
+        yield Row("all", None, why="EN 13906-3 is for round wire")
+        return
+    s, run = sheet.spring, sheet.at_run
+    rate, q = en13906.turn_rate(sheet.elastic.young_modulus, s.d, s.D, s.n), en13906.bending_correction(s.index)
+    why = "with the wire's pitch and curvature"
+    yield Row("rate R", rate, "N mm/°", "E d⁴/(3667 D n)", DERIVED, run("turn_rate_Nmm_per_deg"), why)
+    yield Row("stress factor q", q, "", "(4 w² − w − 1)/(4 w (w − 1))", DERIVED)
+    most = max(sheet.turns_to, key=abs)
+    for turn in sheet.turns_to:
+        torque, largest = rate * abs(turn), turn == most
+        σ, flow = en13906.bending_stress(torque, s.d), "less where the wire yields, more on an arbor"
+        found = run("torque_max_Nmm") if largest else None
+        yield Row(f"torque at {turn:.4g}°", torque, "N mm", "R α", DERIVED, None if found is None else abs(found), flow)
+        yield Row("  bending stress σ", σ, "MPa", "32 M/(π d³)", DERIVED)
+        found = run("max_bending_inside_MPa") if largest else None
+        found = None if found is None else abs(found)
+        yield Row("  at the inside σq", q * σ, "MPa", "q σ", DERIVED, found, "largest at the inside")
+        inner = en13906.turned_diameter(s.D, s.n, turn) - s.d
+        found = run("inner_diameter_min_mm") if largest and turn > 0.0 else None
+        yield Row("  inner diameter", inner, "mm", "D n/(n + α/360°) − d", DERIVED, found, "also off the axis")
 
 
 def _spring(sheet: Sheet) -> Iterator[Row]:
@@ -103,7 +160,8 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
     yield _rate(sheet)
     held = "(½ − ν)" if sheet.held else "(1 − ν)/(2 (1 + ν))"
     formula = f"R/(1 + tan²α {held} + …), α = {degrees(s.pitch_angle):.1f}°"
-    yield Row("R of a rising wire", rate / softer, "N/mm", formula, DERIVED)
+    if not s.wire:
+        yield Row("R of a rising wire", rate / softer, "N/mm", formula, DERIVED)
     hot = en13906.is_hot_coiled(s.d)
     cold_formulas = {"closed and ground": "n_t d_max", "closed": "(n_t + 1.5) d_max"}
     formula = "(n_t − 0.3) d_max, hot coiled" if hot else cold_formulas.get(s.ends, "")
@@ -120,7 +178,7 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
         force,
         _why_block(sheet),
     )
-    travel = critical_travel(s.length, s.D, e.shear_modulus / e.young_modulus)
+    travel = s.buckling_travel(e.shear_modulus / e.young_modulus)
     formula = f"Haringx, ν = 0.5; to block {s.length - solid:.4g} mm"
     never = "never buckles by the formula"
     why = "with its pitch, end turns and coils that touch, which the formula neglects" if isfinite(travel) else never
@@ -146,11 +204,13 @@ def _why_block(sheet: Sheet) -> str:
 
 def _stresses(sheet: Sheet) -> Iterator[Row]:
     s, wire = sheet.spring, sheet.wire
-    k, τ = en13906.stress_correction(s.index), sheet.stress(s.solid)
+    k, τ = s.correction, sheet.stress(s.solid)
     force, true = (sheet.at_run(name) if sheet.was_at_block else None for name in ("force_max_N", "shear_max_MPa"))
-    nominal = None if force is None else en13906.stress(force, s.d, s.D)
-    yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, nominal, "nominal, of the force found")
-    yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
+    nominal = None if force is None else en13906.stress(force, s.of_stress, s.D)
+    formula = "D Fc/(2 W)" if s.wire else "8 D Fc/(π d³)"
+    yield Row("stress τc", τ, "MPa", formula, DERIVED, nominal, "nominal, of the force found")
+    formula = "of the elastic section in the coil, computed" if s.wire else "(w + 0.5)/(w − 0.75)"
+    yield Row("stress correction k", k, "", formula, DERIVED if s.wire else TWO)
     why = "maximum true shear stress on the surface of the middle turns"
     yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO, true, why)
     if wire is None:
@@ -167,7 +227,7 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
 
 
 def _working(sheet: Sheet) -> Iterator[Row]:
-    s, k = sheet.spring, en13906.stress_correction(sheet.spring.index)
+    s, k = sheet.spring, sheet.spring.correction
     gaps, hot = en13906.gap_sum(s.d, s.D, s.n, sheet.dynamic), en13906.is_hot_coiled(s.d)
     formula = "0.02 n (D + d), hot coiled" if hot else f"{'1.5 ' * sheet.dynamic}n (0.0015 D²/d + 0.1 d)"
     yield Row("minimum sum of gaps Sa", gaps, "mm", formula, ONE if hot else TWO)
@@ -175,7 +235,7 @@ def _working(sheet: Sheet) -> Iterator[Row]:
     yield Row("smallest length Ln", sheet.shortest + gaps, "mm", formula, ONE if hot else TWO)
     for length in sorted(sheet.lengths, reverse=True):
         τ, force = sheet.stress(length), sheet.found.force_at(length) if sheet.found else None
-        real = None if force is None else en13906.stress(force, s.d, s.D)
+        real = None if force is None else en13906.stress(force, s.of_stress, s.D)
         yield Row(
             f"force at {length:.5g} mm",
             sheet.force(length),
@@ -185,7 +245,8 @@ def _working(sheet: Sheet) -> Iterator[Row]:
             force,
             _why_force(sheet, length),
         )
-        yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED, real, "nominal, of the force found")
+        formula = "D F/(2 W)" if s.wire else "8 D F/(π d³)"
+        yield Row("  stress τ", τ, "MPa", formula, DERIVED, real, "nominal, of the force found")
         yield Row("  corrected stress τk", k * τ, "MPa", "k τ", TWO, None if real is None else k * real, "the same")
         yield Row("  sum of gaps", length - sheet.shortest, "mm", f"L − {sheet.shortest:.4g} mm", DERIVED)
 
@@ -201,12 +262,14 @@ def _why_force(sheet: Sheet, length: float) -> str:
 
 def _dynamics(sheet: Sheet) -> Iterator[Row]:
     s, e = sheet.spring, sheet.elastic
-    f = en13906.natural_frequency(e.shear_modulus, e.density, s.d, s.D, s.n)
+    # f ∝ √(R/m), by torsional stiffness and area
+    d = s.of_rate**2 / s.of_mass if s.wire else s.d
+    f = en13906.natural_frequency(e.shear_modulus, e.density, d, s.D, s.n)
     yield Row(
         "natural frequency",
         f,
         "Hz",
-        "d/(2π n D²) √(G/(2ρ)), ends held",
+        "½ √(R/m) of the active turns, ends held" if s.wire else "d/(2π n D²) √(G/(2ρ)), ends held",
         DERIVED,
         _frequency(sheet),
         "½ √(R/m) with the rate found and the helix's mass",
@@ -226,7 +289,7 @@ def _dynamics(sheet: Sheet) -> Iterator[Row]:
 def _frequency(sheet: Sheet) -> float | None:
     """Of a half wave along the active turns, Hz, with the rate of the run; None without one."""
     s, rate = sheet.spring, sheet.at_run("rate_N_per_mm")
-    active = en13906.mass(sheet.elastic.density, s.d, sheet.helix * s.n / s.turns)
+    active = en13906.mass(sheet.elastic.density, s.of_mass, sheet.helix * s.n / s.turns)
     return None if rate is None else 0.5 * sqrt(1e3 * rate / active)  # 1 N/mm = 10³ kg/s²
 
 
@@ -253,7 +316,7 @@ def _endurance(sheet: Sheet) -> Iterator[Row]:
 
 def _tolerances(sheet: Sheet) -> Iterator[Row]:
     s, grade = sheet.spring, sheet.grade
-    reason = en15800.outside(s.d, s.D, s.n, s.length)
+    reason = en15800.outside(s.d, s.D, s.n, s.length) if s.wire is None else "its wire is not round"
     if reason:
         yield Row("all", None, why=f"EN 15800 does not cover it: {reason}")
         return

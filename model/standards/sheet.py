@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case import Case
-from coilset.model.case.phases import Phase
+from coilset.model.case.phases import Phase, heads_of
 from coilset.model.standards import en13906, en15800, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.found import Found
 from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import Wire
 
+AT_REST = 1e-9  # of the free length: a target that does not load the spring along its axis
 AT_BLOCK = 0.01  # of the wire diameter: a run closer than this to the block length of the geometry reached block
 
 
@@ -32,7 +33,9 @@ class Sheet:
         held: whether the ends of the run cannot turn about the spring's axis.
         yield_stress: of the run's material in tension, MPa; None if it is unknown or the material is elastic.
         strength: tensile strength Rm that the material's file gives, MPa; None if it gives none.
-        pulled: whether the load program pulls the spring; the standards here are for compression springs.
+        pulled: whether the load program pulls the spring, see EN 13906-2.
+        turns_to: rotations that the load program goes to, degrees, positive in the winding direction, see EN 13906-3.
+        tension: initial tension F0 of coils wound onto each other, N.
     """
 
     spring: Cylinder
@@ -48,11 +51,13 @@ class Sheet:
     yield_stress: float | None = None
     strength: float | None = None
     pulled: bool = False
+    turns_to: Sequence[float] = ()
+    tension: float = 0.0
 
     @property
     def rate(self) -> float:
         """R, N/mm."""
-        return en13906.rate(self.elastic.shear_modulus, self.spring.d, self.spring.D, self.spring.n)
+        return en13906.rate(self.elastic.shear_modulus, self.spring.of_rate, self.spring.D, self.spring.n)
 
     def force(self, length: float) -> float:
         """Nominal force at a length, N: R (L0 − L), or that of coils of variable pitch, which close one by one."""
@@ -68,7 +73,7 @@ class Sheet:
 
     def stress(self, length: float) -> float:
         """Nominal uncorrected shear stress at a length, MPa."""
-        return en13906.stress(self.force(length), self.spring.d, self.spring.D)
+        return en13906.stress(self.force(length), self.spring.of_stress, self.spring.D)
 
     @property
     def block(self) -> float | None:
@@ -91,7 +96,7 @@ class Sheet:
         """Corrected stresses at the longest and the shortest working length; None with fewer than two."""
         if len(self.lengths) < 2:
             return None
-        k = en13906.stress_correction(self.spring.index)
+        k = self.spring.correction
         return goodman.Cycle(k * self.stress(max(self.lengths)), k * self.stress(min(self.lengths)))
 
     @property
@@ -119,6 +124,27 @@ def pulls(case: Case, spring: Spring) -> bool:
     pulled = [value > free if kind == "height" else value < 0.0 for kind, value in goals]
     pressed = [value < free if kind == "height" else value > 0.0 for kind, value in goals]
     return any(pulled) and not any(pressed)
+
+
+def rotations(case: Case, spring: Spring) -> tuple[float, ...]:
+    """Rotations that a load program goes to, degrees, positive in the winding direction; none of one with a travel."""
+    goals = [phase.goal(spring.free_length, spring.block_height) for phase in case.targets]
+    free = spring.free_length
+    if any(abs(value - (free if kind == "height" else 0.0)) > AT_REST * free for kind, value in goals):
+        return ()
+    found: list[float] = []
+    for phase in case.loading:
+        for end, target in heads_of(phase).items():
+            if isinstance(target.turn, float) and target.turn:
+                turn = spring.hand * target.turn * (1.0 if end == "top" else -1.0)
+                found += [] if turn in found else [turn]
+    return tuple(found)
+
+
+def pulled_lengths(case: Case, spring: Spring) -> list[float]:
+    """Heights above the free length that a load program goes to, mm."""
+    goals = [phase.goal(spring.free_length, spring.block_height) for phase in case.targets]
+    return sorted({value for kind, value in goals if kind == "height" and value > spring.free_length})
 
 
 def working_lengths(phases: Sequence[Phase], free_length: float, rate: float, block: float) -> list[float]:

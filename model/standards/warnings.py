@@ -47,7 +47,7 @@ def _wire(spring: Spring) -> Iterator[Warning]:
 
 def _index(spring: Spring) -> Iterator[Warning]:
     t = spring.breaks
-    index = 2 * spring.mean_radius(t) / spring.wire_diameter(t)
+    index = 2 * spring.mean_radius(t) / (spring.wire_diameter(t) * max(1.0, spring.width))
     low, high = INDEX_USUAL
     i = np.argmin(index) if index.min() < low else np.argmax(index)
     if not low <= index[i] <= high:

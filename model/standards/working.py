@@ -42,12 +42,12 @@ def stress_warnings(made: "Sheet", lengths: Sequence[float], wire: Wire) -> list
     """
     spring = made.spring
     allowed, of = wire.block_stress(spring.d), wire.entry.block_stress.of
-    factor = en13906.stress_correction(spring.index) if of == "corrected stress" else 1.0
+    factor = spring.correction if of == "corrected stress" else 1.0
     found = []
     for length in lengths:
         computed = made.found.force_at(length) if made.found else None
         force = made.force(length) if computed is None else computed
-        stress = factor * en13906.stress(force, spring.d, spring.D)
+        stress = factor * en13906.stress(force, spring.of_stress, spring.D)
         if stress > allowed:
             source = "formula" if computed is None else "run"
             found.append(

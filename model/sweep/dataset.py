@@ -16,6 +16,7 @@ from coilset.model.results.files.netcdf import reserve
 from coilset.model.results.records.units import quantity
 from coilset.model.sweep.journal import Records
 from coilset.model.sweep.keys import as_rod
+from coilset.model.sweep.parquet import corrects, responses_of, words_of_warnings
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import are_numbers
 
@@ -100,28 +101,6 @@ def _recipe(plan: Plan) -> dict[str, str]:
 
 def _attributes(words: str, unit: str) -> dict[str, str]:
     return {"long_name": words, "units": unit}
-
-
-def responses_of(plan: Plan, record: dict[str, Any]) -> dict[str, float]:
-    """Numbers of the summary of a case that is done, by their names in the data set."""
-    if record["status"] != "done":
-        return {}
-    prefix = "rod_" if corrects(plan, record) else ""
-    return {
-        f"{prefix}{name}" if prefix or name not in plan.names else f"{name}_found": np.nan if value is None else value
-        for name, value in record["summary"].items()
-        if value is None or (isinstance(value, (int, float)) and not isinstance(value, bool))
-    }
-
-
-def corrects(plan: Plan, record: dict[str, Any]) -> bool:
-    """Whether it is a rod's record of a sweep of uniform rods."""
-    return plan.spec.model == "uniform_rod" and as_rod(record["key"]) == record["key"]
-
-
-def words_of_warnings(record: dict[str, Any]) -> str:
-    """Names of a case's warnings."""
-    return ", ".join(warning["name"] for warning in record["summary"].get("warnings", ()))
 
 
 def _filled(curves: dict[int, np.ndarray], n: int) -> np.ndarray:

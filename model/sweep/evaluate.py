@@ -75,8 +75,9 @@ def evaluate(
         record["steps"] = {
             column.name: [plain(getattr(step, column.name)) for step in result.steps] for column in fields(Step)
         }
-    del analysis, result
-    gc.collect()  # solver and system refer to each other
+    if analysis is not None:
+        del analysis, result
+        gc.collect()  # solver and system refer to each other
     return {**record, "seconds": time.perf_counter() - began}
 
 

@@ -125,8 +125,8 @@ class Records:
         keys: of the tasks that count, in any order.
 
     Attributes:
-        found: for each of the distinct keys, in ascending order, whether there is a record, shape (m,).
-        keys: these keys, an array of bytes, shape (m,).
+        keys: the distinct keys in ascending order, an array of bytes, shape (m,).
+        found, done: for each of them, whether there is a record, and one of a case that is done, shape (m,).
 
     Raises:
         InputError: for a line that is not a record, with its number.
@@ -137,7 +137,7 @@ class Records:
         self.paths = journals(folder)
         self._file = np.full(len(self.keys), -1, np.int32)
         self._start = np.zeros(len(self.keys), np.int64)
-        done = np.zeros(len(self.keys), bool)
+        self.done = done = np.zeros(len(self.keys), bool)
         for number, path in enumerate(self.paths):
             for start, record in _lines(path):
                 at = self._at(record["key"])
@@ -145,6 +145,12 @@ class Records:
                     self._file[at], self._start[at] = number, start
                     done[at] = record["status"] == "done"
         self.found = self._file >= 0
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of the keys that are done, failed and missing."""
+        done, found = int(self.done.sum()), int(self.found.sum())
+        return {"done": done, "failed": found - done, "missing": len(self.keys) - found}
 
     def _at(self, key: str) -> int | None:
         at = int(np.searchsorted(self.keys, key.encode()))

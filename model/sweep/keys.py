@@ -24,6 +24,11 @@ class Keys:
         self._of_material, self._of_file = cache(self._material_digest), cache(_file_digest)
         self.law = cache(library.load)
 
+    @property
+    def sources(self) -> int:
+        """How many materials and files the keys so far contain."""
+        return self._of_material.cache_info().misses + self._of_file.cache_info().misses
+
     def __call__(self, case: Case, model: Model = "rod") -> str:
         """Digest of a case: its entries, its material's constants, the file of a measured spring, and the version; with
         `u` behind it for its estimate by the uniform rod."""

@@ -12,6 +12,7 @@ regression of r on u. A quantile is where the probability so estimated has its l
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -40,6 +41,10 @@ class Statistic:
 class ControlVariate:
     """Estimates for one response.
 
+    Attributes:
+        rod: as given.
+        uniform: number of uniform rods.
+
     Args:
         rod: of the cases that rods computed, shape (n,).
         uniform: of the same cases by the uniform rod, shape (n,).
@@ -52,19 +57,21 @@ class ControlVariate:
     def __init__(self, rod: np.ndarray, uniform: np.ndarray, all_uniform: np.ndarray) -> None:
         if len(rod) < FEWEST:
             raise ValueError(f"{len(rod)} rods are too few for an interval; {FEWEST} are needed")
-        self.rod = rod
+        self.rod, self.uniform = rod, len(all_uniform)
         slope = _slope(rod, uniform)
         self._predicted = rod.mean() + slope * (uniform - uniform.mean())
-        self._all_predicted = rod.mean() + slope * (all_uniform - uniform.mean())
+        self._all_predicted = np.sort(rod.mean() + slope * (all_uniform - uniform.mean()))
 
     def mean(self) -> Statistic:
         """Of the response."""
-        return self._controlled(self.rod, self._predicted, self._all_predicted)
+        every = self._all_predicted
+        return self._controlled(self.rod, self._predicted, float(every.mean()), float(every.var()))
 
     def probability(self, limit: float) -> Statistic:
         """That the response is at most `limit`."""
-        indicators = (values <= limit for values in (self.rod, self._predicted, self._all_predicted))
-        found = self._controlled(*(values.astype(float) for values in indicators))
+        rod, predicted = ((values <= limit).astype(float) for values in (self.rod, self._predicted))
+        share = float(np.searchsorted(self._all_predicted, limit, "right")) / len(self._all_predicted)
+        found = self._controlled(rod, predicted, share, share * (1.0 - share))
         value, low, high = np.clip([found.value, found.low, found.high], 0.0, 1.0).tolist()
         return Statistic(value, low, high, found.worth)
 
@@ -78,12 +85,13 @@ class ControlVariate:
         at = int(np.argmin(np.abs(candidates - value)))
         return Statistic(value, low, high, found[at].worth)
 
-    def _controlled(self, rod: np.ndarray, control: np.ndarray, all_controls: np.ndarray) -> Statistic:
+    def _controlled(self, rod: np.ndarray, control: np.ndarray, mean: float, spread: float) -> Statistic:
+        """Of the mean of `rod`, from its control, and from the mean and variance of the control of all cases."""
         n, beta = len(rod), _slope(rod, control)
-        value = float(rod.mean() - beta * (control.mean() - all_controls.mean()))
+        value = float(rod.mean() - beta * (control.mean() - mean))
         # two degrees of freedom are used up; an indicator that never changes still may by about one case in n
         residual = max(float(np.var(rod - beta * control, ddof=2)), 1.0 / (n + 1.0) ** 2 if _is_indicator(rod) else 0.0)
-        variance = residual / n + beta**2 * float(np.var(all_controls)) / len(all_controls)
+        variance = residual / n + beta**2 * spread / len(self._all_predicted)
         half = float(stats.t.ppf(0.5 + 0.5 * LEVEL, n - 2)) * variance**0.5
         return Statistic(
             value, value - half, value + half, float(np.var(rod, ddof=1)) / variance if variance else np.inf
@@ -115,18 +123,44 @@ def of_response(data: xr.Dataset, name: str) -> ControlVariate:
     return ControlVariate(rod[both], uniform[both], uniform[known])
 
 
-def lines(plan: Plan, data: xr.Dataset) -> Iterator[str]:
-    """For people: mean and quantiles of the responses of rods, with their intervals."""
+def of_parquet(path: str | Path, name: str) -> ControlVariate:
+    """The same of all cases of a sweep, from its Parquet file.
+
+    Raises:
+        ValueError: no or too few rods have it.
+        ImportError: the package pyarrow is not installed.
+    """
+    import pyarrow.compute as pc
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(path, columns=["case", "model", name], read_dictionary=["model"])
+    case, value = table["case"].to_numpy(), table[name].to_numpy()
+    of_rods = pc.equal(table["model"], "rod").to_numpy()
+    uniform = np.full(int(case.max(initial=-1)) + 1, np.nan)
+    uniform[case[~of_rods]] = value[~of_rods]
+    rod, beside = value[of_rods], uniform[case[of_rods]]
+    both = np.isfinite(rod) & np.isfinite(beside)
+    return ControlVariate(rod[both], beside[both], uniform[np.isfinite(uniform)])
+
+
+def lines(plan: Plan, data: xr.Dataset, path: Path) -> Iterator[str]:
+    """For people: mean and quantiles of the responses of rods, with their intervals.
+
+    Args:
+        plan: of the sweep.
+        data: its cases, or some of them.
+        path: of the Parquet file with all of them, which may be missing.
+    """
     if not plan.spec.rods:
         return
-    yield f"rods, from {plan.spec.rods} of them and {data.sizes['case']} uniform rods (95 % intervals):"
+    yield "rods, from some of them and many uniform rods (95 % intervals):"
     for name in ("set_mm", "force_max_N"):
         try:
-            estimates = of_response(data, name)
+            estimates = of_parquet(path, name) if path.exists() else of_response(data, name)
         except ValueError as error:
             yield f"  {error}"
             continue
         words, unit = quantity(name)
         found = {"mean": estimates.mean()} | {f"{level:.0%}": estimates.quantile(level) for level in QUANTILES}
         parts = (f"{word} {one.value:.5g} ({one.low:.5g} to {one.high:.5g})" for word, one in found.items())
-        yield f"  {words}, {unit}: {', '.join(parts)}"
+        yield f"  {words}, {unit}, {len(estimates.rod):,} and {estimates.uniform:,}: {', '.join(parts)}"

@@ -33,6 +33,13 @@ class Rows(Sequence[Row]):
         column = self.columns[k]
         return isinstance(column, np.ndarray) or are_numbers(column)
 
+    def content(self) -> bytes:
+        """All values, for a digest."""
+        columns = (
+            column.tobytes() if isinstance(column, np.ndarray) else repr(column).encode() for column in self.columns
+        )
+        return b"|".join(columns)
+
     def __len__(self) -> int:
         return self._length + len(self.added)
 
@@ -57,11 +64,13 @@ class Strings(Sequence[str]):
     """Keys of cases.
 
     Args:
-        keys: in order, ASCII.
+        keys: in order, ASCII; or the array of them.
     """
 
-    def __init__(self, keys: Iterable[str]) -> None:
-        self.array = np.fromiter((key.encode() for key in keys), dtype=f"S{KEY_LENGTH}")
+    def __init__(self, keys: Iterable[str] | np.ndarray) -> None:
+        if not isinstance(keys, np.ndarray):
+            keys = np.fromiter((key.encode() for key in keys), dtype=f"S{KEY_LENGTH}")
+        self.array: np.ndarray = keys
 
     def add(self, key: str) -> None:
         """Append one."""

@@ -3,6 +3,7 @@
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.section.outline import Outlined
 
 
 def coil(spring: Spring) -> np.ndarray:
@@ -14,6 +15,8 @@ def coil(spring: Spring) -> np.ndarray:
     t = np.linspace(start, end, 257)
     middle = 0.5 * (t[1:] + t[:-1])
     d = spring.wire_diameter(middle)
+    if spring.section is not None:  # round wire of the same torsional stiffness
+        d = d * (Outlined(spring.section).warping().torsion / (0.5 * np.pi)) ** 0.25
     mean = float(d.mean())
     D = float(np.mean((2.0 * spring.mean_radius(middle)) ** 3 / d**4) * mean**4) ** (1.0 / 3.0)
     pitch = float(spring.height(end) - spring.height(start)) / (end - start)

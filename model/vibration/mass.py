@@ -48,7 +48,8 @@ class SectionMass(NamedTuple):
 def section_mass(rod: Rod, density: float) -> SectionMass:
     """Mass at the sections of a rod in its trial state.
 
-    What grinding has taken off the ends is counted as if it were there.
+    What grinding has taken off the ends is counted as if it were there. Of wire that is not round, ∫ z² dA and ∫ y² dA
+    are in the place of ½ J; its centre of gravity counts as being on the axis.
 
     Args:
         rod: Rod.
@@ -64,6 +65,12 @@ def section_mass(rod: Rod, density: float) -> SectionMass:
     tangent = np.einsum("cij,cgj->cgi", triads, rotation[..., 0, :])
     polar = 0.5 * mass * rod.radius[:, None] ** 2
     inertia = 0.5 * polar[..., None, None] * (np.eye(3) + tangent[..., :, None] * tangent[..., None, :])
+    if rod.rule.outline is not None:
+        (y, z), share = rod.rule.points.T, rod.rule.weights.sum()
+        second = rod.rule.weights @ np.stack([y**2 + z**2, z**2, y**2], axis=1) / share
+        mass = mass * share
+        axes = np.einsum("cij,cgkj->cgki", triads, rotation)  # t, n, b in space
+        inertia = np.einsum("cg,k,cgki,cgkj->cgij", mass * rod.radius[:, None] ** 2, second, axes, axes)
     return SectionMass(np.einsum("cij,cgj->cgi", triads, offset), mass, inertia)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coilset.model.base.errors import InputError, naming
-from coilset.scripts.commands.learning import springs
+from coilset.scripts.commands.learning import relaxation, springs
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target, results_folder
@@ -28,7 +28,11 @@ app = typer.Typer(
 app.command(springs.NAME)(springs.fit_springs)
 MATERIAL = typer.Argument(help="name in the library, or path of a material file")
 DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension strain, stress")
-RELAXATION = typer.Argument(help="relaxation tests (CSV): columns hours, temperature, loss, stress or shear_stress")
+RELAXATION = typer.Argument(
+    help="relaxation tests (CSV): columns hours, temperature, loss, stress or shear_stress; or force of a spring, "
+    "whose case file (YAML) follows"
+)
+POINT_ERROR = 0.5  # % of the load, with which a point is read off a printed diagram
 OUT = typer.Option(None, callback=folder_target, help="results folder [default: results/material/NAME]")
 FORCE = typer.Option(False, *OVERWRITE, help="overwrite existing files")
 
@@ -173,19 +177,23 @@ def _say_what_is_told(fit: "CyclicFit", console: "Console") -> None:
 def creep(
     material: str = MATERIAL,
     data: list[str] = RELAXATION,
+    points: bool = typer.Option(
+        False, "--points", help="points of a catalogue: three are enough; 48 h if none are given"
+    ),
+    time_exponent: float = typer.Option(None, min=0.05, max=1.0, help="p, if all losses are after the same time"),
+    loss_error: float = typer.Option(None, min=1e-3, help="error of a loss, % of the load [with --points: 0.5]"),
     form: str = typer.Option("norton_bailey", help="norton_bailey, or garofalo"),
     hardening: str = typer.Option("strain", help="strain, or time"),
     name: str = typer.Option("creeping", help="name of the material"),
     out: str = OUT,
     force: bool = FORCE,
 ) -> None:
-    """Fit the constants of creep to relaxation tests, and write the material with them."""
+    """Fit the constants of creep to relaxation tests, catalogue points or load losses of springs."""
     from rich.table import Table
 
     from coilset.model.material import library
     from coilset.model.material.identification.creep_figure import creep_figure
     from coilset.model.material.identification.creep_fit import UNITS, fit_creep
-    from coilset.model.material.identification.relaxation_tests import read_relaxation
     from coilset.scripts.terminal.console import Console
 
     for value, known, option in (
@@ -195,17 +203,22 @@ def creep(
         if value not in known:
             raise InputError(f"'{value}' is none of {', '.join(known)}", option)
     file, picture = _free(_folder(out, name), force, f"{name}.yaml", f"{name}.png")
-    result = fit_creep(library.load(material), tuple(read_relaxation(path) for path in data), form, hardening)
+    error = POINT_ERROR if points and loss_error is None else loss_error
+    tests = relaxation.read(data, points)
+    result = fit_creep(library.load(material), tests, form, hardening, time_exponent, error)
     console = Console()
     table = Table("constant", "value", "from", "to (95 %)", "unit", box=None, padding=(0, 2))
     for key, (low, high) in result.interval.items():
         table.add_row(key, f"{result.constants[key]:.4g}", f"{low:.4g}", f"{high:.4g}", UNITS[key])
+    if time_exponent is not None:
+        table.add_row("time_exponent", f"{time_exponent:g}", "given", "", "")
     console.print(table)
-    console.print(
-        f"at {result.constants['temperature']:g} K and, of strain, {result.constants['stress']:g} MPa; "
-        f"residual {result.scatter:.2g} % of the load"
-    )
+    console.print(f"at {result.constants['temperature']:g} K and, of strain, {result.constants['stress']:g} MPa")
+    for line in relaxation.words(result, error):
+        console.print(line, soft_wrap=True)
     source = "coilset material creep, " + ", ".join(Path(one).name for one in data)
+    if time_exponent is not None:
+        source += f", with p = {time_exponent:g} given"
     _write_material(file, result.material(name, source), console)
     _save(creep_figure(result), picture, console)
 

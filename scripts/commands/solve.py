@@ -19,6 +19,7 @@ from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
 from coilset.model.run.analysis import Analysis
+from coilset.model.run.refinement import within_accuracy
 from coilset.model.runtime.threads import usual
 from coilset.scripts.compiling import compile_first
 from coilset.scripts.interrupt import Interrupt
@@ -91,7 +92,7 @@ def _begin(log: logging.FileHandler, out: Path, force: bool, resume: bool) -> No
 
 def _solve(
     telling: Lines,
-    analysis: Analysis,
+    first: Analysis,
     case_file: str | Path,
     out: Path,
     drawings: Drawings | None,
@@ -99,14 +100,13 @@ def _solve(
     interactive: bool,
     interrupt: Interrupt,
 ) -> None:
-    comm, checkpoint = analysis.comm, Checkpoint(out, analysis.case)
-    if resume:
-        analysis.resume(checkpoint.load(comm))
-    telling.begin(analysis, case_file, resume)
-    began = time.perf_counter()
-    failure = _run(telling, analysis, checkpoint, interactive, interrupt)
-    if comm.rank == 0:
-        checkpoint.over()
+    began, runs, failure = time.perf_counter(), _Runs(telling, case_file, out, resume, interactive, interrupt), None
+    analysis = first
+    try:
+        analysis = runs(first) if interactive else within_accuracy(first, runs)
+    except (SolveError, KeyboardInterrupt) as error:
+        failure, analysis = error, runs.best
+    comm = analysis.comm
     interrupt.over()
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
@@ -128,24 +128,62 @@ def _solve(
         raise failure
 
 
-def _run(
-    telling: Lines, analysis: Analysis, checkpoint: Checkpoint, interactive: bool, interrupt: Interrupt
-) -> SolveError | KeyboardInterrupt | None:
-    """Run the program; an exception that ended it early is returned, since the results so far are written first."""
-    ask = Prompt(analysis, telling.say) if interactive else None
+class _Runs:
+    """Runs the analyses of a case, the first and the finer ones, each with its checkpoint.
 
-    def report(step: Step) -> None:
-        telling.step(step)
-        interrupt.check()
-        if ask:
-            ask(step)
+    Attributes:
+        best: the last one whose results are to be written: the finest complete one, or the first.
+    """
 
-    try:
-        with telling.iterations():
-            analysis.run(report, checkpoint.save, interrupt.check)
-    except (SolveError, KeyboardInterrupt) as error:
-        return error
-    return None
+    def __init__(
+        self,
+        telling: Lines,
+        case_file: str | Path,
+        out: Path,
+        resume: bool,
+        interactive: bool,
+        interrupt: Interrupt,
+    ) -> None:
+        self._telling, self._case_file, self._out = telling, case_file, out
+        self._resume, self._interactive, self._interrupt = resume, interactive, interrupt
+        self._number = 0
+
+    def __call__(self, analysis: Analysis, finer: str = "") -> Analysis:
+        """Run one; `finer` says what is finer than before.
+
+        Raises:
+            SolveError, KeyboardInterrupt: as Analysis.run.
+        """
+        comm, telling, checkpoint = analysis.comm, self._telling, Checkpoint(self._out, analysis.case, self._number)
+        if not self._number:
+            self.best = analysis
+            if self._resume:
+                analysis.resume(checkpoint.load(comm))
+            telling.begin(analysis, self._case_file, self._resume)
+        else:
+            if self._resume and comm.bcast(checkpoint.exists()):
+                try:
+                    analysis.resume(checkpoint.load(comm))
+                except InputError as error:  # the case has changed since, and with it what must be finer
+                    log.info("the finer run is not continued: %s", error)
+            telling.again(analysis, finer)
+        self._number += 1
+        ask = Prompt(analysis, telling.say) if self._interactive else None
+
+        def report(step: Step) -> None:
+            telling.step(step)
+            self._interrupt.check()
+            if ask:
+                ask(step)
+
+        try:
+            with telling.iterations():
+                analysis.run(report, checkpoint.save, self._interrupt.check)
+        finally:
+            if comm.rank == 0:
+                checkpoint.over()
+        self.best = analysis
+        return analysis
 
 
 def _draw(drawings: Drawings, out: Path, telling: Lines) -> None:

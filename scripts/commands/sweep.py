@@ -15,10 +15,10 @@ from rich.table import Table
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.results.files.folder import clear, making, refuse_obstacles
-from coilset.model.sweep import multifidelity
+from coilset.model.sweep import parquet
 from coilset.model.sweep.engines.pool import Pool
 from coilset.model.sweep.engines.processes import Workers
-from coilset.model.sweep.journal import Journal, journals, read_records
+from coilset.model.sweep.journal import Journal, Records, journals, read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import Limits, finished, missing, run
 from coilset.model.sweep.shards import Shard
@@ -31,6 +31,7 @@ if TYPE_CHECKING:  # at run time only after the environment is saved
 
 REPORT_SECONDS = 30.0  # seconds between progress lines without a terminal
 SHOWN_FAILURES = 5
+KEPT_FROM = 10_000  # cases: from here on reading them again is worth a file
 
 
 @dataclass(frozen=True)
@@ -94,8 +95,8 @@ def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> P
     if options.force and options.continues:
         raise InputError("discards what other options keep; give one of them", "--overwrite")
     shard = options.shard
-    refuse_obstacles(out, [shard.journal, "sweep.nc", "sweep.parquet", "workers.log"])
-    plan = Plan(sweep_file)
+    refuse_obstacles(out, [shard.journal, "plan.npz", "sweep.nc", "sweep.parquet", "workers.log"])
+    plan = Plan(sweep_file, out / "plan.npz")
     if not (options.force or options.continues) and journals(out):
         raise InputError("holds a sweep; use --resume to finish it, or --overwrite to overwrite it", "--out", out)
     with making(out):
@@ -103,6 +104,8 @@ def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> P
     held.enter_context(only_run(out) if shard.count == 1 else shard.claimed(out))
     if options.force:
         clear(out, ("sweep.nc", "sweep.parquet", "report.html", *(path.name for path in journals(out))))
+    if shard.number == 1 and len(plan) >= KEPT_FROM:
+        plan.keep(out / "plan.npz")
     return plan
 
 
@@ -176,23 +179,26 @@ class Bar:
 
 def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     """Data set, figures and a summary in words; returns the number of failed cases."""
-    from coilset.model.sweep import dataset, parquet  # after the cases: xarray and matplotlib take half a second
-    from coilset.model.sweep.figures.figures import FILES, draw
-
     if options.shard.count > 1:
         console.say(f"journal in {out / options.shard.journal}; when all shards are done, --collect joins them")
         return sum(record["status"] == "failed" for record in read_records(out / options.shard.journal))
-    data = dataset.collect(plan, out)
-    clear(out, ("report.html", *FILES))  # of other cases
-    dataset.write(out / "sweep.nc", data)
-    if parquet.write(out / "sweep.parquet", plan, out) is None:
+    clear(out, ("sweep.parquet", "report.html"))  # of other cases
+    records = Records(out, (key for _row, key, _model in plan.tasks()))
+    counts = records.counts
+    if parquet.write(out / "sweep.parquet", plan, records) is None:
         console.warn("sweep.parquet is not written: the package pyarrow is not installed")
+    del records
+    from coilset.model.sweep import dataset, multifidelity  # after the cases: xarray and matplotlib take half a second
+    from coilset.model.sweep.figures.figures import FILES, draw
+
+    data = dataset.collect(plan, out)
+    clear(out, FILES)
+    dataset.write(out / "sweep.nc", data)
     if data.sizes["case"] < len(plan):
         console.say(f"sweep.nc and figures show {data.sizes['case']} of {len(plan)} cases; sweep.parquet has all")
     files, problems = draw(out, plan, data) if options.pictures else ([], [])
-    for line in multifidelity.lines(plan, data):
+    for line in multifidelity.lines(plan, data, out / "sweep.parquet"):
         console.print(line)
-    counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}
     table = Table(show_header=True, box=None, padding=(0, 2))
     for column in ("", "minimum", "mean", "maximum"):
         table.add_column(column, justify="left" if not column else "right")

@@ -60,6 +60,12 @@ class Lines:
             self.say(f"continuing after step {analysis.continuation.number}")
         self.say(f"{HEAD}{'points':>7}  contacts")  # a row fits in 80 columns
 
+    def again(self, analysis: Analysis, finer: str) -> None:
+        """A finer run of the same case begins or continues; `finer` says what is finer."""
+        self.analysis, self._began, self._from = analysis, time.monotonic(), _done(analysis)
+        self.say(f"the estimated error exceeds the accuracy: again with {finer}")
+        self.say(f"{HEAD}{'points':>7}  contacts")
+
     def step(self, step: Step) -> None:
         """A step has been found."""
         cuts = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else ""
@@ -93,31 +99,10 @@ class Lines:
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """Print the results."""
         table = Table(show_header=False, box=None, padding=(0, 2))
-        of_set = summary["estimated_set_error_mm"]
-        table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
-        for number, release in enumerate(summary["releases"][:-1], 1):
-            table.add_row(f"free length after release {number}", quantity(release["free_length_mm"], "mm"))
-        last = "free length after the last release" if len(summary["releases"]) > 1 else "free length after"
-        table.add_row(last, within(summary["free_length_after_mm"], of_set, "mm", 4))
-        table.add_row("[bold]set[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]")
-        table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
-        if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
-            finished = summary["rate_30_70_after_N_per_mm"]
-            name = "rate at 30 to 70 % of the travel" if finished is None else "rate of the finished spring, 30 to 70 %"
-            table.add_row(name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm"))
-        for rate in summary["rates"]:
-            table.add_row(f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm"))
-        table.add_row("maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2))
-        if summary["load_loss_percent"] is not None:
-            table.add_row("load lost in time", quantity(summary["load_loss_percent"], "%", 2))
-        table.add_row("block height", quantity(summary["block_height_mm"], "mm"))
-        table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
-        error, turn = summary["estimated_residual_shear_inside_error_MPa"], summary["residual_shear_inside_turn"]
-        inside = within(summary["residual_shear_inside_MPa"], error, "MPa", 2)
-        at = "" if turn is None else f" at turn {turn:.2f}"
-        table.add_row("residual shear stress, inside of coil", inside + at)
-        if largest := largest_errors(summary["estimated_errors"]):
-            table.add_row("largest part of the errors ±", largest)
+        if summary["turn_max_deg"] is None:
+            _add_pressed(table, summary)
+        else:
+            _add_turned(table, summary)
         self.console.print(table)
         if summary["working"]:
             self.console.print(working_table(summary["working"]))
@@ -170,6 +155,11 @@ class JsonLines(Lines):
             loading=[phase.label for phase in analysis.case.loading],
             ranks=analysis.comm.size,
         )
+
+    def again(self, analysis: Analysis, finer: str) -> None:
+        """A finer run of the same case."""
+        super().again(analysis, finer)
+        self._put("again", finer=finer, elements=len(analysis.setup.turns) - 1)
 
     def step(self, step: Step) -> None:
         """The step's row of history.csv, the contacts, and the completed part of the load program."""
@@ -276,3 +266,48 @@ class _Handler(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         """Print it, fainter than the steps."""
         self.console.print(f"[dim]{record.getMessage()}[/]", soft_wrap=True)
+
+
+def _add_pressed(table: Table, summary: Mapping[str, Any]) -> None:
+    """Rows of a spring that is compressed or pulled."""
+    of_set = summary["estimated_set_error_mm"]
+    if summary["initial_tension_N"] is not None:
+        table.add_row("initial tension before", quantity(summary["initial_tension_N"], "N", 2))
+        table.add_row("initial tension after", quantity(summary["initial_tension_after_N"], "N", 2))
+        table.add_row("rate, coils open", quantity(summary["open_rate_N_per_mm"], "N/mm"))
+    table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
+    for number, release in enumerate(summary["releases"][:-1], 1):
+        table.add_row(f"free length after release {number}", quantity(release["free_length_mm"], "mm"))
+    last = "free length after the last release" if len(summary["releases"]) > 1 else "free length after"
+    table.add_row(last, within(summary["free_length_after_mm"], of_set, "mm", 4))
+    table.add_row("[bold]set[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]")
+    table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
+    if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
+        finished = summary["rate_30_70_after_N_per_mm"]
+        name = "rate at 30 to 70 % of the travel" if finished is None else "rate of the finished spring, 30 to 70 %"
+        table.add_row(name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm"))
+    for rate in summary["rates"]:
+        table.add_row(f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm"))
+    table.add_row("maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2))
+    if summary["load_loss_percent"] is not None:
+        table.add_row("load lost in time", quantity(summary["load_loss_percent"], "%", 2))
+    table.add_row("block height", quantity(summary["block_height_mm"], "mm"))
+    table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
+    error, turn = summary["estimated_residual_shear_inside_error_MPa"], summary["residual_shear_inside_turn"]
+    inside = within(summary["residual_shear_inside_MPa"], error, "MPa", 2)
+    at = "" if turn is None else f" at turn {turn:.2f}"
+    table.add_row("residual shear stress, inside of coil", inside + at)
+    if largest := largest_errors(summary["estimated_errors"]):
+        table.add_row("largest part of the errors ±", largest)
+
+
+def _add_turned(table: Table, summary: Mapping[str, Any]) -> None:
+    """Rows of a torsion spring."""
+    table.add_row("[bold]set[/]", f"[bold]{quantity(summary['turn_set_deg'], '°', 2)}[/]")
+    table.add_row("largest rotation", quantity(summary["turn_max_deg"], "°", 2))
+    table.add_row("maximum torque", quantity(summary["torque_max_Nmm"], "N mm", 1))
+    table.add_row("rate", quantity(summary["turn_rate_Nmm_per_deg"], "N mm/°"))
+    for side in ("inside", "outside"):
+        stress = quantity(summary[f"residual_bending_{side}_MPa"], "MPa", 2)
+        table.add_row(f"residual bending stress, {side} of coil", stress)
+    table.add_row("smallest inner diameter", quantity(summary["inner_diameter_min_mm"], "mm", 2))

@@ -96,7 +96,7 @@ def test_a_row_says_what_the_entry_takes():
     """Against the entries as their file declares them, one of each kind."""
     rows = {(group.model.__name__, row.name): row for group in reference.groups(MODELS["case"]) for row in group.rows}
     wire = rows["SpringSpec", "wire_diameter"]
-    assert (wire.unit, wire.default, wire.range) == ("mm", "required", "0.001 to 100,000")
+    assert (wire.unit, wire.default, wire.range) == ("mm", "none", "0.001 to 100,000")
     radial = rows["SectionSpec", "radial"]
     assert (radial.forms[0].kind, radial.default, radial.range) == ("whole number", "`8`", "≥ 1, ≤ 64")
     coils = rows["FrictionSpec", "coils"]

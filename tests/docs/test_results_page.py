@@ -47,7 +47,7 @@ def test_seats(run):
 def test_summary(run):
     """Names, units and meanings are those of Summary; the page adds links only."""
     section = re.split(r"^## ", PAGE.partition("\n## summary.json\n")[2], flags=re.MULTILINE)[0]
-    table = re.findall(r"^\| `(\w+)` \| (?:(\S+) )?\| (.*) \|$", section, re.MULTILINE)
+    table = re.findall(r"^\| `(\w+)` \| (?:([^|]+) )?\| (.*) \|$", section, re.MULTILINE)
     page = [(name, unit, re.sub(r" \(\[[^]]*\]\([^)]*\)\)", "", text)) for name, unit, text in table]
     assert page == [(item.name, item.metadata["unit"], item.metadata["text"]) for item in fields(Summary)]
     assert list(summarise(*run)) == [item.name for item in fields(Summary)]

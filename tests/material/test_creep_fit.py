@@ -171,6 +171,70 @@ def test_wrong_files(change, message, tmp_path):
     assert message in str(error.value)
 
 
+POINTS = "temperature;shear_stress;loss\n353,15;600;{}\n393,15;600;{}\n393,15;750;{}\n"
+
+
+def of_points(tmp_path, losses):
+    path = tmp_path / "points.csv"
+    path.write_text(POINTS.format(*(f"{loss:.4f}".replace(".", ",") for loss in losses)))
+    return read_relaxation(path, points=True)
+
+
+def test_three_points_of_a_catalogue_determine_three_constants(tmp_path):
+    """The law of the points comes back; in noise of the stated error the intervals hold it 19 times of 20."""
+    law = library.load("creeping")
+    clean = exact(law, of_points(tmp_path, [1.0, 1.0, 1.0]))
+    assert clean.hours.tolist() == [48.0] * 3
+    fitted = lambda tests: creep_fit.fit_creep(law, (tests,), time_exponent=0.2, error=0.3)  # noqa: E731
+    found = fitted(of_points(tmp_path, clean.loss))
+    assert found.constants["exponent"] == pytest.approx(6.0, rel=2e-3)
+    assert found.constants["activation_energy"] == pytest.approx(150000.0, rel=2e-3)
+    assert found.range == {"stress": [1039.23, 1299.04], "temperature": [353.15, 393.15], "hours": [48.0, 48.0]}
+    rng, held = np.random.default_rng(0), []
+    for _ in range(60):
+        one = fitted(replace(clean, loss=clean.loss + 0.3 * rng.normal(size=3)))
+        held.append([low <= TRUE[name] <= high for name, (low, high) in one.interval.items() if name != "strain"])
+    assert (np.mean(held, axis=0) > 0.86).all()  # of 60, fewer than 52 would happen once in 150 times
+    assert not found.beyond
+
+
+def test_points_that_no_law_follows_are_seen(tmp_path):
+    """A loss that falls with the temperature, among six points."""
+    law = library.load("creeping")
+    tests = Readings("torsion", *np.array([[600.0, 750.0] * 3, [353.15] * 2 + [393.15] * 4, [48.0] * 6, [0.0] * 6]))
+    clean = exact(law, tests)
+    wrong = replace(clean, loss=clean.loss + np.array([0.0, 0.0, 3.0, -3.0, -3.0, 3.0]))
+    assert creep_fit.fit_creep(law, (wrong,), time_exponent=0.2, error=0.5).beyond
+    assert not creep_fit.fit_creep(law, (clean,), time_exponent=0.2, error=0.5).beyond
+
+
+def test_one_time_needs_its_exponent(tmp_path):
+    with pytest.raises(InputError, match="give p by --time-exponent"):
+        creep_fit.fit_creep(library.load("creeping"), (of_points(tmp_path, [1.0, 2.0, 3.0]),), error=0.5)
+
+
+def test_the_command_takes_load_losses_of_a_spring(tmp_path):
+    """Forces become 8 F D/(π d³); the material file says for what it is known."""
+    case = {
+        "spring": {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 6.0, "pitch": 10.0},
+        "material": "creeping",
+        "loading": [{"to": {"travel": 1}}],
+    }
+    (tmp_path / "spring.yaml").write_text(yaml.safe_dump(case))
+    (tmp_path / "losses.csv").write_text("temperature,force,loss\n353.15,471,1.1\n393.15,471,6.5\n393.15,589,14\n")
+    arguments = ["creep", "creeping", str(tmp_path / "losses.csv"), str(tmp_path / "spring.yaml"), "--points"]
+    arguments += ["--time-exponent", "0.2", "--name", "mine", "--out", str(tmp_path)]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 0, done.output
+    assert "as many readings as constants; the intervals are those of an error of 0.5 % of the load" in done.output
+    known = library.load(tmp_path / "mine.yaml").creep.tests
+    shear = np.array([471.0, 589.0]) * 8.0 * 32.0 / (np.pi * 4.0**3)
+    assert known.stress == pytest.approx(np.sqrt(3.0) * shear, rel=1e-4)
+    assert known.hours == (48.0, 48.0)
+    done = CliRunner().invoke(app, [*arguments[:3], *arguments[4:], "--overwrite"])
+    assert "its case file must follow" in str(done.exception)
+
+
 def test_tests_that_cannot_tell():
     with pytest.raises(InputError, match="two temperatures: Q is unknown otherwise"):
         creep_fit.fit_creep(library.load("creeping"), (readings(temperatures=(353.15,)),))

@@ -129,6 +129,15 @@ def test_warnings_are_counted_in_words(folder):
     assert kinds <= KINDS.keys()
 
 
+def test_a_sample_says_of_how_many_cases_it_is(plan, folder, tmp_path):
+    dataset.write(tmp_path / "sweep.nc", dataset.collect(plan, folder, most=2))
+    page = write_sweep_report(tmp_path).read_text(encoding="utf-8")
+    assert "A sample of 2 of the 6 cases, evenly spread over the plan" in page
+    assert "Cases of a sample" in page
+    kept = re.search(r'<script type="text/plain" id="data">(.*?)</script>', page).group(1)
+    assert json.loads(gzip.decompress(base64.b64decode(kept)))["columns"][0]["values"] == [1, 4]
+
+
 def test_an_entry_of_a_table_is_named_by_its_turn(tmp_path):
     spring = CASE["spring"] | {"pitch": {"turns": [0, 0.7, 1.5], "values": [9, 9, 12], "interpolation": "linear"}}
     (tmp_path / "case.yaml").write_text(yaml.safe_dump(CASE | {"spring": spring}))

@@ -11,11 +11,13 @@ from mpi4py import MPI
 
 from coilset.model.base.warning import Warning
 from coilset.model.case import read_case
+from coilset.model.material.law.file import CreepTests
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.records.record import Result, Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.records.warnings import accuracy_warning, run_warnings, step_warnings
 from coilset.model.run.analysis import Analysis
+from coilset.model.section import surface
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_law
 from coilset.scripts.commands.solve import solve
@@ -93,6 +95,27 @@ def test_warnings_of_steps(lifted):
         found = step_warnings(setup, Result(steps=(step, replace(step, number=2, **wrong))))
         assert name in names(found)
         assert next(one for one in found if one.name == name).place.startswith("step 2, ") or name == "buckled"
+
+
+def test_creep_beyond_its_tests(lifted):
+    """Stress where time begins to pass: of the snapshot before that phase, not of a press before."""
+    shots, step = lifted.result.snapshots, Step(1, 1, 1.0, 30.0, 5.0, 100.0, 3, 4, 0, 0, 2, 0.0)
+    steps = (step, replace(step, number=2, hours=48.0, temperature_K=393.0))
+    stress = float(surface.equivalent(shots[1].surface_state, shots[1].components).max())
+    inside = {"temperature": (353.0, 393.0), "stress": (0.0, stress), "hours": (48.0, 48.0)}
+
+    def found(**changes):
+        limits = replace(lifted.setup.limits, creep=CreepTests.model_validate(inside | changes))
+        result = replace(lifted.result, steps=steps)
+        return [one for one in run_warnings(replace(lifted.setup, limits=limits), result) if one.name == "creep"]
+
+    assert found() == []
+    for name, place, value in (("temperature", "temperature", 393.0), ("hours", "time", 48.0)):
+        (one,) = found(**{name: (1.0, 0.9 * value)})
+        assert (one.place, one.value) == (place, value)
+    (one,) = found(stress=(0.0, 0.9 * stress))
+    assert one.place == "equivalent stress"
+    assert "the load loss is extrapolated" in one.message
 
 
 @pytest.mark.parametrize("critical", [math.inf, 8.0], ids=["stout", "slender"])

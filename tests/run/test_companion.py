@@ -46,7 +46,7 @@ def test_the_total_is_the_sum_of_four_causes_and_is_in_the_history(clamped):
 
 
 def test_the_meshs_error_covers_the_difference_to_a_fine_one(clamped, example):
-    """The force falls with the second power of the length here, so that the estimate is three times as large."""
+    """The force falls with the second power of the length here: the estimate is a quarter larger, of the set thrice."""
     _, summary = clamped
     _, fine = analysed(example, "ends=clamped", "mesh.elements_per_turn=32", estimates=False)
     mesh = summary["estimated_errors"]["mesh"]

@@ -295,7 +295,8 @@ def test_a_pulled_spring_gets_no_rows_for_compression_springs(tmp_path):
     case = read_case(path)
     spring = case.spring.build()
     made = case_sheet(case, spring, None)
-    assert [title for title, _ in sections(made)] == ["Dimensions", "Rate"]
-    assert "for compression springs; this one is pulled" in rows(made)["all others"].why
+    assert [title for title, _ in sections(made)] == ["Dimensions", "Extension spring, EN 13906-2"]
+    assert "block length Lc" not in rows(made)
+    assert rows(made)["force at 38.32 mm"].value == pytest.approx(20.0 * made.rate, rel=1e-9)
     names_of = {warning.name for warning in case_warnings(case, spring, case_law(case, spring))}
     assert not names_of & {"buckling", "gap", "stress"}

@@ -106,7 +106,9 @@ def test_parquet_has_every_record_with_units(plan, tmp_path):
     folder = tmp_path / "out"
     solve(plan, folder)
     path = folder / "sweep.parquet"
-    assert parquet.write(path, plan, folder) == 10
+    records = Records(folder, (key for _, key, _ in plan.tasks()))
+    assert records.counts == {"done": 10, "failed": 0, "missing": 0}
+    assert parquet.write(path, plan, records) == 10
     table = pq.read_table(path)
     assert table.schema.field("set_mm").metadata[b"units"] == b"mm"
     rows = {(row["case"], row["model"]): row for row in table.to_pylist()}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from coilset.model.sweep.multifidelity import ControlVariate
+from coilset.model.sweep.multifidelity import ControlVariate, of_parquet
 
 N, FEW = 4000, 60
 LIMIT = 11.5
@@ -54,6 +54,22 @@ def test_without_correlation_it_is_plain_sampling():
     found = ControlVariate(rod[:FEW], uniform[:FEW], uniform).mean()
     half = stats.t.ppf(0.975, FEW - 2) * rod[:FEW].std(ddof=1) / np.sqrt(FEW)
     assert 0.5 * (found.high - found.low) == pytest.approx(half, rel=0.05)
+
+
+def test_all_cases_of_a_parquet_file_count(tmp_path):
+    """In any order, with a rod whose uniform rod failed, which is left out."""
+    pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    rod, uniform = responses(np.random.default_rng(0))
+    uniform = np.where(np.arange(N) == 3, np.nan, uniform)
+    case = np.random.default_rng(1).permutation(N + FEW)
+    model, at = np.where(case < N, "uniform_rod", "rod"), np.where(case < N, case, case - N)
+    values = np.where(case < N, uniform[at], rod[at])
+    pq.write_table(pa.table({"case": at, "model": model, "set_mm": values}), tmp_path / "sweep.parquet")
+    found, good = of_parquet(tmp_path / "sweep.parquet", "set_mm"), np.arange(FEW) != 3
+    expected = ControlVariate(rod[:FEW][good], uniform[:FEW][good], uniform[np.isfinite(uniform)])
+    for name in ("value", "low", "high"):
+        assert getattr(found.mean(), name) == pytest.approx(getattr(expected.mean(), name), rel=1e-12)
+    assert (len(found.rod), found.uniform) == (FEW - 1, N - 1)
 
 
 def test_too_few_rods_give_no_interval():

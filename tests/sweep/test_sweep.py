@@ -139,12 +139,12 @@ def gone(pid):
         return True
 
 
-def begun(path, out, records, stdout):
+def begun(path, out, records, stdout, *options, name="journal.jsonl"):
     """A sweep on one worker that has so many records behind it: its process, its workers' numbers, its journal."""
-    journal = out / "journal.jsonl"
+    journal = out / name
     # what a shell starts in the background ignores SIGINT, and hands that on to all that it starts
     hear = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
-    leader = subprocess.Popen(command(path, out, "--jobs", "1"), stdout=stdout, preexec_fn=hear)
+    leader = subprocess.Popen(command(path, out, "--jobs", "1", *options), stdout=stdout, preexec_fn=hear)
     wait_until(lambda: journal.exists() and journal.read_bytes().count(b"\n") >= records)
     return leader, workers_of(leader.pid), journal
 
@@ -168,6 +168,23 @@ def test_kill_and_resume_lose_nothing_and_repeat_nothing(write_sweep, tmp_path):
     with xr.open_dataset(out / "sweep.nc", engine="h5netcdf") as data:
         assert (data.status == "done").all()
         assert data.set_mm.notnull().all()
+
+
+def test_two_allocations_on_one_plan_and_one_is_killed(write_sweep, tmp_path):
+    """Each case is recorded once: the killed shard goes on beside the other one, which computes none of its cases."""
+    path, out = write_sweep("vary: {spring.wire_diameter: {from: 4, to: 5, count: 24}}"), tmp_path / "out"
+    other = subprocess.Popen(command(path, out, "--jobs", "1", "--shard", "2/2"), stdout=subprocess.DEVNULL)
+    shard = ("--shard", "1/2")
+    leader, workers, journal = begun(path, out, 2, subprocess.DEVNULL, *shard, name="journal-1-of-2.jsonl")
+    leader.send_signal(signal.SIGKILL)
+    leader.wait()
+    wait_until(lambda: all(gone(pid) for pid in workers))
+    assert 2 <= len(list(read_records(journal))) < 12
+    subprocess.run(command(path, out, *shard), check=True, stdout=subprocess.DEVNULL)
+    assert other.wait(240) == 0
+    keys = [record["key"] for path in out.glob("journal-*.jsonl") for record in read_records(path)]
+    assert sorted(keys) == sorted(Plan(path).keys)
+    assert not list(out.glob("*.running"))
 
 
 @pytest.mark.parametrize("option", ["--overwrite", "--resume"])
@@ -380,6 +397,30 @@ def test_a_changed_material_file_makes_new_cases(write_sweep, tmp_path):
     assert "22480" in ck15
     (tmp_path / "own.yaml").write_text(ck15.replace("22480", "22481"))
     assert Plan(write_sweep(text)).keys != first
+
+
+def test_kept_keys_count_until_plan_material_or_version_change(write_sweep, tmp_path, monkeypatch):
+    text = "change: {material: %s}\nvary: {spring.wire_diameter: [5.0, 5.1]}" % (tmp_path / "own.yaml")
+    ck15 = (FOLDER / "ck15.yaml").read_text()
+    (tmp_path / "own.yaml").write_text(ck15)
+    kept, path = tmp_path / "plan.npz", write_sweep(text)
+    first = Plan(path, kept)
+    first.keep(kept)
+    checked = []
+    original = Plan._checked
+    monkeypatch.setattr(Plan, "_checked", lambda plan, row: checked.append(row) or original(plan, row))
+    assert Plan(path, kept).keys == first.keys
+    assert checked == [(5.0,)]  # the first case that names the material
+    assert Plan(write_sweep(text.replace("5.1", "5.2"), "other"), kept).keys[1] != first.keys[1]
+    (tmp_path / "own.yaml").write_text(ck15.replace("22480", "22481"))
+    changed = Plan(path, kept)
+    assert set(changed.keys).isdisjoint(first.keys)
+    assert changed.keys == Plan(path).keys
+    (tmp_path / "own.yaml").write_text(ck15)
+    monkeypatch.setattr("coilset.model.sweep.keys.__version__", "0.0.1")
+    assert set(Plan(path, kept).keys).isdisjoint(first.keys)
+    kept.write_bytes(b"torn")
+    assert len(Plan(path, kept)) == 2
 
 
 def test_a_material_file_that_changes_during_the_sweep_gives_no_case_of_before(write_sweep, tmp_path):

@@ -1,5 +1,8 @@
 """Measured numbers beside those of a run: verdicts, ratios and wrong tables."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 import yaml
 
@@ -25,7 +28,8 @@ def test_a_folder(tmp_path):
     (tmp_path / "case.yaml").write_text(yaml.safe_dump(CASE))
     rows = "force_N;185,0;10;12;1;\nset_mm;9;0,1;;;\nstress_+45°_MPa;0;500;;;1,25\n"
     (tmp_path / "measured.csv").write_text(HEAD + rows, encoding="utf-8")
-    force, lost, stress = compare(tmp_path, tmp_path / "results")
+    found = compare(tmp_path, tmp_path / "results")
+    force, lost, stress = found.rows
     assert force.met
     assert force.ratio == pytest.approx(1.0, abs=0.06)
     assert not lost.met
@@ -33,7 +37,14 @@ def test_a_folder(tmp_path):
     assert stress.met
     assert stress.computed != 0.0
     assert (tmp_path / "results" / "summary.json").is_file()
-    assert figure([force, lost], "spring").axes[0].get_title() == "spring: 1 of 2 numbers met"
+    drawn = figure(replace(found, rows=[force, lost]), "spring")
+    assert drawn.axes[0].get_title() == "spring: 1 of 2 numbers met"
+    pressed, released = drawn.axes[1].lines[:2]
+    assert np.interp(10.0, *pressed.get_data()) == pytest.approx(force.computed, rel=1e-3)
+    assert released.get_xdata()[-1] == pressed.get_xdata()[-1] == pytest.approx(12.0)
+    (dot,) = drawn.axes[1].containers
+    assert dot.lines[0].get_ydata() == [185.0]
+    assert len(figure(replace(found, rows=[lost]), "spring").axes) == 1
     (tmp_path / "measured.csv").write_text(HEAD + "sett_mm;9;0,1;;;\n")
     with pytest.raises(InputError, match=r"line 2: 'sett_mm' is none that this run has"):
         compare(tmp_path, tmp_path / "results", overwrite=True)

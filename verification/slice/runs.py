@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.meshes.section import section_mesh
+from coilset.meshes.section import SectionMesh, section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
@@ -36,12 +36,12 @@ def elastic(outline: Outline, diameter: float, law: Law, across: float, degree: 
 
 @dataclass(frozen=True)
 class Pressed:
-    """A turn of a round wire pressed to nine tenths of the way to block and released.
+    """A turn pressed to nine tenths of the way to block and released.
 
     Attributes:
         unknowns, seconds: processor time of the steps of compression and release.
         travel, force: of all steps, mm and N; set_mm: travel at no force.
-        full, released: τ13 at ξ = −0.9, 0.9 of the wire's radius, MPa, under the maximum force and after release.
+        full, released: τ13 at the places, MPa, under the maximum force and after release.
     """
 
     unknowns: int
@@ -62,21 +62,26 @@ def pressed(
     steps: int = 12,
     material: str = "ck15",
 ) -> Pressed:
-    """Press a turn in equal steps and release it in one."""
-    coil = Coil(0.5 * index * WIRE, pitch)
-    body = Slice(section_mesh(round_wire(WIRE), across, degree, inside=INSIDE), coil, library.load(material))
-    watch = Watch(body, np.array([[-0.45 * WIRE, 0.0], [0.45 * WIRE, 0.0]]))
+    """Press a turn of round wire in equal steps and release it in one; stress at ξ = −0.9, 0.9 of its radius."""
+    section = section_mesh(round_wire(WIRE), across, degree, inside=INSIDE)
+    travels = travel * np.arange(1, steps + 1) / steps
+    places = np.array([[-0.45 * WIRE, 0.0], [0.45 * WIRE, 0.0]])
+    return press(section, Coil(0.5 * index * WIRE, pitch), travels, places, material)
+
+
+def press(section: SectionMesh, coil: Coil, travel: np.ndarray, places: np.ndarray, material: str = "ck15") -> Pressed:
+    """Press a turn to one travel after the other, mm, and release it; stress at the places (ξ, η), mm."""
+    body = Slice(section, coil, library.load(material))
+    watch = Watch(body, places)
     problem = SliceProblem(body)
     problem.probe(coil.rise * (1 - 1e-9), watch)  # compiles what is not
-    began, travels, forces = time.process_time(), [0.0], [0.0]
-    for part in np.arange(1, steps + 1) / steps:
-        problem.go_to_rise(coil.rise - part * travel / (2 * np.pi))
-        travels.append(part * travel)
+    began, forces = time.process_time(), [0.0]
+    for one in travel:
+        problem.go_to_rise(coil.rise - one / (2 * np.pi))
         forces.append(problem.force)
     full = watch.section_stress()[:, 4]
     problem.go_to_force(0.0)
     seconds = time.process_time() - began
     back = 2 * np.pi * (coil.rise - body.rise)
-    return Pressed(
-        body.u.size + 2, seconds, np.array(travels), np.array(forces), back, full, watch.section_stress()[:, 4]
-    )
+    travels, after = np.append(0.0, travel), watch.section_stress()[:, 4]
+    return Pressed(body.u.size + 2, seconds, travels, np.array(forces), back, full, after)

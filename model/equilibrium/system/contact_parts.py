@@ -8,8 +8,7 @@ from mpi4py import MPI
 
 from coilset.model.base.agreement import max_of_ranks
 from coilset.model.body.lever import Swing
-from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution
-from coilset.model.contact.memory import Memory
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory
 from coilset.model.equilibrium.system.halo import Halo
 from coilset.model.equilibrium.system.layout import LineLayout
 

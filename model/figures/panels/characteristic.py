@@ -18,7 +18,9 @@ AGAIN = "For the second loading, add a phase to the load program, such as “- t
 
 
 def characteristic(run: Run) -> Panel:
-    """Force over travel, one line per phase, with the initial rate, block and set."""
+    """Force over travel, one line per phase, with the initial rate, block and set; torque over rotation in torsion."""
+    if run.summary.get("turn_max_deg") is not None:
+        return torque_curve(run)
     summary, found = run.summary, phases(run, NAMED)
     traces = []
     for phase, travel, force in _curves(run, found):
@@ -29,7 +31,12 @@ def characteristic(run: Run) -> Panel:
         traces.append(steps | {"mode": "markers", "marker": {"size": 5, "color": steps["line"]["color"]}})
     traces += unnamed(found, NAMED)
     greatest, rate, set_mm = summary["force_max_N"], summary["rate_N_per_mm"], summary["set_mm"]
-    if rate:
+    opened, held = (summary.get(name) for name in ("open_rate_N_per_mm", "initial_tension_N"))
+    if opened:  # the initial rate is that of coils that touch
+        x = np.array([float(np.nanmin(run.data["travel_mm"].values)), 0.0])
+        name = f"{held:.4g} N + {opened:.4g} N/mm · extension"
+        traces.append(curve(x, opened * x - held, GREY, dash="dot", width=1.2, name=name))
+    elif rate:
         travels = np.abs(run.data["travel_mm"].values)
         end = min(abs(greatest) / rate, float(np.nanmax(travels, initial=0.0)) or 1.0)
         x, name = np.array([0.0, np.copysign(end, greatest)]), f"initial rate {rate:.4g} N/mm"
@@ -38,16 +45,41 @@ def characteristic(run: Run) -> Panel:
     block = summary["free_length_before_mm"] - summary["block_height_mm"]
     finding = f"{compressed(greatest)} with up to {plain(abs(greatest))} N{_outcome(summary)}"
     layout = upright(block, f"block, {summary['block_height_mm']:.4g} mm high")
+    if greatest < 0.0:
+        layout = {"annotations": []}
     if set_mm:
         layout["annotations"] += _arrow(set_mm)
     return Panel(
         "characteristic",
         finding,
-        f"Axial force over travel. {finding}. Block is at {block:.4g} mm of travel.",
+        f"Axial force over travel. {finding}.{'' if greatest < 0.0 else f' Block is at {block:.4g} mm of travel.'}",
         traces,
         {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), **layout},
         height=HEIGHT,
         note="" if set_mm is None or len(found) > 2 else AGAIN,
+    )
+
+
+def torque_curve(run: Run) -> Panel:
+    """Torque over the rotation of the top head against the bottom one, one line per phase, with rate and set."""
+    summary, found, traces = run.summary, phases(run, NAMED), []
+    for phase, turn, torque in _curves(run, found, ("turn_deg", "torque_Nmm")):
+        colour = phase.number if phase.number < NAMED else GREY
+        traces.append(curve(turn, torque, colour, marker=5, name=phase.label, showlegend=phase.named))
+    traces += unnamed(found, NAMED)
+    greatest, rate, most = (summary[name] for name in ("torque_max_Nmm", "turn_rate_Nmm_per_deg", "turn_max_deg"))
+    x = np.array([0.0, np.copysign(min(abs(greatest / rate), abs(most)), most)])
+    traces.append(curve(x, rate * x, GREY, dash="dot", width=1.2, name=f"rate {rate:.4g} N mm/°"))
+    set_deg = summary["turn_set_deg"]
+    left = "" if set_deg is None else f", the spring sets {plain(set_deg)}°".replace("-", "−")
+    finding = f"Turned by {plain(most)}° with up to {plain(abs(greatest))} N mm{left}".replace("-", "−")
+    return Panel(
+        "characteristic",
+        finding,
+        f"Torque over rotation. {finding}.",
+        traces,
+        {"xaxis": axis("rotation, °"), "yaxis": axis("torque, N mm")},
+        height=HEIGHT,
     )
 
 
@@ -62,9 +94,11 @@ def _working(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [trace | {"marker": marker, "name": "working lengths"}]
 
 
-def _curves(run: Run, found: list[Phase]) -> Iterator[tuple[Phase, np.ndarray, np.ndarray]]:
-    """Travel (mm) and force (N) of each phase, from the end of the one before on."""
-    travel, force = (np.append(0.0, run.data[name].values) for name in ("travel_mm", "force_N"))
+def _curves(
+    run: Run, found: list[Phase], names: tuple[str, str] = ("travel_mm", "force_N")
+) -> Iterator[tuple[Phase, np.ndarray, np.ndarray]]:
+    """Travel (mm) and force (N), or other columns, of each phase, from the end of the one before on."""
+    travel, force = (np.append(0.0, run.data[name].values) for name in names)
     for phase in found:
         steps = np.append(phase.steps[0], phase.steps + 1)
         yield phase, travel[steps], force[steps]
@@ -95,6 +129,9 @@ def compressed(force: float) -> str:
 def _outcome(summary: Mapping[str, Any]) -> str:
     """The set, or the load that was lost; empty if the spring was not released."""
     set_mm, lost = summary["set_mm"], summary.get("load_loss_percent")
+    before, after = (summary.get(name) for name in ("initial_tension_N", "initial_tension_after_N"))
+    if before and after:
+        return f", the initial tension falls from {plain(before)} to {plain(after)} N"
     if set_mm is None:
         return "" if lost is None else f", the spring loses {plain(lost)} % of its load"
     text = plain(set_mm)
@@ -112,7 +149,9 @@ def _arrow(set_mm: float) -> list[dict[str, Any]]:
 
 
 def rate_curve(run: Run) -> Panel | None:
-    """Slope of the characteristic over travel, phase by phase; None if no phase has three steps."""
+    """Slope of the characteristic over travel, phase by phase; None if no phase has three steps, and in torsion."""
+    if run.summary.get("turn_max_deg") is not None:
+        return None
     traces, found = [], phases(run, NAMED)
     for phase, travel, force in _curves(run, found):
         apart = np.append(True, np.abs(np.diff(travel)) > 1e-9 * np.ptp(travel))

@@ -8,7 +8,7 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 from coilset.model.base.style import round_end
 from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, with_unit
 from coilset.model.figures.rings import FilledSection
-from coilset.model.figures.wire import inside
+from coilset.model.figures.wire import inside, outline
 from coilset.model.results.files.opened import Run
 
 PIXELS = 121  # of a map, across the wire
@@ -44,12 +44,13 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
     turn = 0.5 * float(turns[element : element + 2].sum())
     radius = float(run.data["wire_radius"].values[element])
     y, z = (run.data[axis_name].values[element, 0] for axis_name in "yz")
-    section = FilledSection(np.stack([y, z], axis=-1) / radius)
+    corners = outline(run)
+    section = FilledSection(np.stack([y, z], axis=-1) / radius, corners)
     fields = [_stresses(run, number, element, section) for number in range(len(run.snapshots))]
     traces = []
     for number, both in enumerate(fields):
         end = round_end(max(LEAST_SCALE, *(float(np.abs(field).max()) for field in both)))
-        traces.append(_map(section.places * radius, both[which], radius, end, number))
+        traces.append(_map(section.places * radius, both[which], radius, end, number, corners))
     dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
     traces.append({**dots, "hoverinfo": "skip", "showlegend": False})
     low, high = (with_unit(float(f(fields[-1][which])), "").strip() for f in (np.min, np.max))
@@ -60,7 +61,7 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
         f"Map of the wire's section at turn {turn:.2f}, where the residual shear at the inside of the coil is largest. "
         f"{finding}{sign}.",
         traces,
-        _layout(radius, np.cos(inside(run).angle) > 0),
+        _layout(radius, np.cos(inside(run).angle) > 0, corners),
         tuple(run.snapshots),
         height=430,
         note="Dots are the points at which the section is integrated; the stress on the rim is integrated there, too.",
@@ -81,15 +82,19 @@ def _stresses(run: Run, snapshot: int, element: int, section: FilledSection) -> 
     return section.shear_around(stress("t12"), stress("t13"), inside(run)), stress("s11")
 
 
-def _map(places: np.ndarray, values: np.ndarray, radius: float, end: float, choice: int) -> Trace:
-    """Values on a grid of pixels; beyond the rim those of the rim."""
-    line = np.linspace(-BEYOND * radius, BEYOND * radius, PIXELS)
+def _map(
+    places: np.ndarray, values: np.ndarray, radius: float, end: float, choice: int, corners: np.ndarray | None
+) -> Trace:
+    """Values on a grid of pixels; beyond the rim those of the rim, or none if the wire is not round."""
+    reach = radius * _reach(corners)
+    line = np.linspace(-BEYOND * reach, BEYOND * reach, PIXELS)
     y, z = np.meshgrid(line, line)
     distance = np.hypot(y, z)
-    within = np.minimum(1.0, WITHIN * radius / np.maximum(distance, 1e-12))
+    within = np.minimum(1.0, WITHIN * radius / np.maximum(distance, 1e-12)) if corners is None else 1.0
     triangles = Triangulation(*places.T)
     field = LinearTriInterpolator(triangles, values)(y * within, z * within).filled(np.nan)
-    field[distance > BEYOND * radius] = np.nan
+    if corners is None:
+        field[distance > BEYOND * radius] = np.nan
     return {
         "type": "heatmap",
         "x": line,
@@ -105,10 +110,17 @@ def _map(places: np.ndarray, values: np.ndarray, radius: float, end: float, choi
     }
 
 
-def _layout(radius: float, inwards: bool) -> dict[str, Any]:
+def _reach(corners: np.ndarray | None) -> float:
+    """How far the section reaches along its axes, in wire radii."""
+    return 1.0 if corners is None else float(np.abs(corners).max())
+
+
+def _layout(radius: float, inwards: bool, corners: np.ndarray | None) -> dict[str, Any]:
     """A square map; the area outside the wire is covered in the background colour."""
-    edge = BEYOND * 1.06 * radius
+    edge = BEYOND * 1.06 * radius * _reach(corners)
     around = radius * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
+    if corners is not None:
+        around = radius * (corners @ [1.0, 1j])
     rim = "M" + " L".join(f"{at.real:.5g},{at.imag:.5g}" for at in around) + " Z"
     beyond = f"M{-edge},{-edge} L{edge},{-edge} L{edge},{edge} L{-edge},{edge} Z{rim}"
     square = {"range": [-edge, edge], "constrain": "domain", "showgrid": False, "zeroline": False}

@@ -8,11 +8,14 @@ from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
 from coilset.model.material.identification.creep_fit import CreepFit, modulus
+from coilset.model.material.identification.relaxation_tests import Readings
 from coilset.model.material.identification.relaxing import loss
 
 
 def creep_figure(result: CreepFit) -> Figure:
-    """Loss of load over time, one panel for each kind of test and temperature."""
+    """Loss of load over time, one panel for each kind of test and temperature; over stress if there is one time."""
+    if len(np.unique(np.concatenate([tests.hours for tests in result.tests]))) == 1:
+        return _over_stress(result)
     panels = [(tests, T) for tests in result.tests for T in np.unique(tests.temperature)]
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(3.4 * max(len(panels), 2), 3.6), layout="constrained")
@@ -29,4 +32,25 @@ def creep_figure(result: CreepFit) -> Figure:
             place.set(xlabel="time in h", title=f"{tests.kind}, {T:g} K")
             place.legend(title="line: fitted")
         axes[0].set(ylabel="loss of load in %")
+    return figure
+
+
+def _over_stress(result: CreepFit) -> Figure:
+    """As catalogues print it: loss after one time over stress, a curve for each temperature, over the tests' range."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(4.6 * len(result.tests), 3.8), layout="constrained")
+        for place, tests in zip(figure.subplots(1, len(result.tests), squeeze=False)[0], result.tests, strict=True):
+            fine = np.linspace(tests.stress.min(), tests.stress.max(), 60)
+            same = np.ones_like(fine)
+            for k, T in enumerate(np.unique(tests.temperature)):
+                line = Readings(tests.kind, fine, T * same, tests.hours[0] * same, 0.0 * same)
+                values = loss(result.form, result.hardening, result.constants, line, modulus(result.law, line))
+                half, here = result.uncertainty(line), tests.temperature == T
+                place.fill_between(fine, np.maximum(values - half, 0.0), values + half, color=f"C{k}", alpha=0.15, lw=0)
+                place.plot(fine, values, color=f"C{k}")
+                place.plot(tests.stress[here], tests.loss[here], "o", ms=5, color=f"C{k}", label=f"{T:g} K")
+            what = "stress" if tests.kind == "tension" else "shear stress at the surface"
+            place.set(xlabel=f"{what} at the start in N/mm²", ylabel=f"loss of load after {tests.hours[0]:g} h in %")
+            place.set_ylim(0.0, 1.25 * max(tests.loss.max(), 1.0))
+            place.legend(title="line: fitted, band: 95 %")
     return figure

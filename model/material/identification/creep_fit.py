@@ -4,12 +4,16 @@ Least squares of the losses over log c₀, N, p, Q (and log σ₀ of Garofalo's 
 temperature, so that the constants are nearly independent of each other. All readings count alike. The covariance is
 s² (JᵀJ)⁻¹ with s² of the residuals; the interval of each constant holds it with 95 % confidence (Student's t).
 Readings of one specimen that err together make the intervals too narrow.
+
+A catalogue prints few points, all after the same time. Then p is given, not fitted, and s is the error with which a
+point can be read off, unless the residuals are larger than it allows (χ², 95 %).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
+from scipy.stats import chi2, norm
 from scipy.stats import t as student
 
 from coilset.model.base.errors import InputError, SolveError
@@ -42,7 +46,8 @@ class CreepFit:
         constants: all entries of creep that are numbers.
         interval: lowest and highest value of each fitted constant, 95 % confidence each.
         tests: as given; loss: of the law at their readings, per cent.
-        scatter: standard deviation of the residuals, per cent.
+        scatter: standard deviation of the residuals, per cent; NaN of as many readings as constants.
+        beyond: whether the residuals are larger than the readings' error allows.
     """
 
     law: Law
@@ -53,10 +58,23 @@ class CreepFit:
     tests: tuple[Readings, ...]
     loss: tuple[np.ndarray, ...]
     scatter: float
+    beyond: bool
+    _fitted: tuple["_Problem", np.ndarray, np.ndarray]  # its variables, and the squared half-widths of their intervals
+
+    def uncertainty(self, tests: Readings) -> np.ndarray:
+        """Half-width of the 95 % interval of the law's loss at some readings, per cent."""
+        problem, x, squares = self._fitted
+        slopes = replace(problem, tests=(tests,), moduli=(modulus(self.law, tests),)).slopes(x)
+        return np.sqrt(np.einsum("ij,jk,ik->i", slopes, squares, slopes))
+
+    @property
+    def range(self) -> dict[str, list[float]]:
+        """Least and greatest temperature, equivalent stress and time of the tests, as in a material file."""
+        return _range(self.tests)
 
     def material(self, name: str, source: str) -> dict[str, object]:
         """Content of a material file: that of the law, with this creep."""
-        creep = {"form": self.form, "hardening": self.hardening} | self.constants
+        creep = {"form": self.form, "hardening": self.hardening, **self.constants, "tests": self.range}
         data = self.law.data.model_dump(mode="json", exclude_none=True)
         data |= {"name": name, "source": f"{self.law.source}; creep: {source}", "creep": creep}
         MaterialFile.model_validate(data)
@@ -73,14 +91,19 @@ class _Problem:
     moduli: tuple[np.ndarray, ...]
     stress: float
     temperature: float
+    time_exponent: float | None = None  # if it is given
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(BOUNDS)[: 5 if self.form == "garofalo" else 4]
+        known = {"log_stress"} if self.form != "garofalo" else set()
+        known |= {"time_exponent"} if self.time_exponent is not None else set()
+        return tuple(name for name in BOUNDS if name not in known)
 
     def constants(self, x: np.ndarray) -> dict[str, float]:
         """Entries of a material file."""
         values = dict(zip(self.names, x.tolist(), strict=True))
+        if self.time_exponent is not None:
+            values["time_exponent"] = self.time_exponent
         stress = self.stress if "log_stress" not in values else float(np.exp(values.pop("log_stress")))
         found = {"strain": float(np.exp(values.pop("log_strain"))), "stress": stress, **values}
         if self.form == "garofalo":  # log_strain is that at the mean stress
@@ -107,7 +130,12 @@ class _Problem:
 
 
 def fit_creep(
-    law: Law, tests: tuple[Readings, ...], form: str = "norton_bailey", hardening: str = "strain"
+    law: Law,
+    tests: tuple[Readings, ...],
+    form: str = "norton_bailey",
+    hardening: str = "strain",
+    time_exponent: float | None = None,
+    error: float | None = None,
 ) -> CreepFit:
     """Identify the constants of creep.
 
@@ -115,13 +143,15 @@ def fit_creep(
         law: gives E and G over temperature.
         tests: Readings at two stresses and two temperatures at least.
         form, hardening: as in a material file.
+        time_exponent: p, of tests that have only one time; left out: fitted.
+        error: standard deviation of a reading, per cent of the load; left out: that of the residuals.
 
     Raises:
         InputError: if the tests cannot determine a constant, or lie outside the material's table.
         SolveError: if no constants are found.
     """
-    _check(tests)
-    stresses = np.concatenate([one.stress * (1.0 if one.kind == "tension" else np.sqrt(3.0)) for one in tests])
+    _check(tests, time_exponent)
+    stresses = _stresses(tests)
     temperatures = np.concatenate([one.temperature for one in tests])
     problem = _Problem(
         form,
@@ -130,10 +160,18 @@ def fit_creep(
         tuple(modulus(law, one) for one in tests),
         float(f"{np.exp(np.log(stresses).mean()):.3g}"),
         float(np.round(temperatures.mean())),
+        time_exponent,
     )
     found = min((_adjusted(problem, start) for start in STARTS), key=lambda one: one.cost)
     freedom = found.fun.size - found.x.size
-    scatter = float(np.sqrt(2.0 * found.cost / freedom))
+    if freedom < (0 if error else 1):
+        raise InputError(f"{found.fun.size} readings cannot determine {found.x.size} constants; give more", "tests")
+    scatter = float(np.sqrt(2.0 * found.cost / freedom)) if freedom else np.nan
+    beyond = error is not None and 2.0 * found.cost > error**2 * chi2.isf(1.0 - CONFIDENCE, max(freedom, 1))
+    if error is None or (beyond and freedom):
+        width = scatter * float(student.isf(0.5 * (1.0 - CONFIDENCE), freedom))
+    else:
+        width = error * float(norm.isf(0.5 * (1.0 - CONFIDENCE)))
     J = problem.slopes(found.x)
     scale = np.linalg.norm(J, axis=0)
     if not scale.min() > 0.0 or np.linalg.cond(J / scale) > 1e8:
@@ -141,10 +179,30 @@ def fit_creep(
             "these tests cannot distinguish the constants of creep; other stresses, temperatures or times are needed"
         )
     inverse = np.linalg.inv((J / scale).T @ (J / scale)) / np.outer(scale, scale)
-    intervals = _intervals(problem, found.x, inverse * (scatter * student.isf(0.5 * (1.0 - CONFIDENCE), freedom)) ** 2)
+    squares = inverse * width**2
     return CreepFit(
-        law, form, hardening, problem.constants(found.x), intervals, tests, tuple(problem.losses(found.x)), scatter
+        law,
+        form,
+        hardening,
+        problem.constants(found.x),
+        _intervals(problem, found.x, squares),
+        tests,
+        tuple(problem.losses(found.x)),
+        scatter,
+        beyond,
+        (problem, found.x, squares),
     )
+
+
+def _stresses(tests: tuple[Readings, ...]) -> np.ndarray:
+    """Equivalent stresses of all readings, N/mm²."""
+    return np.concatenate([one.stress * (1.0 if one.kind == "tension" else np.sqrt(3.0)) for one in tests])
+
+
+def _range(tests: tuple[Readings, ...]) -> dict[str, list[float]]:
+    parts = {"stress": _stresses(tests)}
+    parts |= {name: np.concatenate([getattr(one, name) for one in tests]) for name in ("temperature", "hours")}
+    return {name: [float(f"{end:.6g}") for end in (values.min(), values.max())] for name, values in parts.items()}
 
 
 def _intervals(problem: _Problem, x: np.ndarray, squares: np.ndarray) -> dict[str, tuple[float, float]]:
@@ -166,11 +224,12 @@ def _intervals(problem: _Problem, x: np.ndarray, squares: np.ndarray) -> dict[st
     return found
 
 
-def _check(tests: tuple[Readings, ...]) -> None:
+def _check(tests: tuple[Readings, ...], time_exponent: float | None) -> None:
     for name, what in (("stress", "stresses: N"), ("temperature", "temperatures: Q"), ("hours", "times: p")):
         values = np.concatenate([getattr(one, name) for one in tests])
-        if len(np.unique(values)) < 2:
-            raise InputError(f"the tests need two {what} is unknown otherwise; there is only {values[0]:g}", name)
+        if len(np.unique(values)) < 2 and not (name == "hours" and time_exponent):
+            hint = "; give p by --time-exponent" if name == "hours" else ""
+            raise InputError(f"the tests need two {what} is unknown otherwise; there is only {values[0]:g}{hint}", name)
 
 
 def modulus(law: Law, tests: Readings) -> np.ndarray:
@@ -182,8 +241,10 @@ def modulus(law: Law, tests: Readings) -> np.ndarray:
 def _adjusted(problem: _Problem, start: tuple[float, float, float]) -> OptimizeResult:
     """Least squares from a start, with log c₀ found first by trying."""
     bounds = np.array([BOUNDS[name] for name in problem.names]).T
+    known = dict(zip(("exponent", "time_exponent", "activation_energy"), start, strict=True))
+    known["log_stress"] = float(np.log(0.5 * problem.stress))
     tries = [
-        np.array([log_strain, *start, np.log(0.5 * problem.stress)])[: len(problem.names)]
+        np.array([{"log_strain": log_strain, **known}[name] for name in problem.names])
         for log_strain in np.arange(-24.0, -1.0, 2.0)
     ]
     first = min(tries, key=lambda x: float(np.sum(problem.residual(x) ** 2)))

@@ -11,6 +11,9 @@ from coilset.model.base.errors import InputError
 STRESSES = {"stress": "tension", "shear_stress": "torsion"}  # the column that says what is strained
 NEEDED = ("hours", "temperature", "loss")
 FEWEST = 8  # readings
+FEWEST_POINTS = 3  # of a catalogue's diagram
+CATALOGUE_HOURS = 48.0  # after which catalogues print losses
+FORCE = "force"
 
 
 @dataclass(frozen=True)
@@ -32,26 +35,38 @@ class Readings:
     loss: np.ndarray
 
 
-def read_relaxation(path: str | Path) -> Readings:
+def read_relaxation(path: str | Path, points: bool = False, per_force: float | None = None) -> Readings:
     """Read relaxation tests from a CSV file, one reading a row.
 
     Columns: hours, temperature (K), loss (%), and stress, of wire in tension, or shear_stress, at the surface of a bar
-    in torsion or of the wire of a spring at constant height (N/mm²).
+    in torsion or of the wire of a spring at constant height (N/mm²), or the force of a spring (N).
+
+    Args:
+        path: of the file.
+        points: of a catalogue's diagram: three are enough, and without a column of hours they are after 48 h.
+        per_force: shear stress at the surface of the spring's wire over its force, 1/mm²; needed for a column of force.
 
     Raises:
         InputError: if the file cannot be read, or a column or a number is missing or wrong.
     """
     table = read_columns(path)
-    given = [name for name in STRESSES if name in table.names]
-    missing = [name for name in NEEDED if name not in table.names]
-    wanted = f"{', '.join(NEEDED)}, and stress or shear_stress"
+    kinds = STRESSES if per_force is None else {FORCE: "torsion"}
+    given = [name for name in kinds if name in table.names]
+    needed = [name for name in NEEDED if not (points and name == "hours")]
+    missing = [name for name in needed if name not in table.names]
+    wanted = f"{', '.join(needed)}, and {' or '.join(kinds)}"
     if missing:
         raise table.lacks(missing[0], wanted)
+    if FORCE in table.names and per_force is None:
+        raise InputError("gives forces of a spring; its case file must follow: losses.csv spring.yaml", "", table.path)
     if len(given) != 1:
-        raise InputError(f"give one of the columns stress and shear_stress; the columns are {wanted}", "", table.path)
-    if len(table.rows) < FEWEST:
-        raise InputError(f"has {len(table.rows)} readings; {FEWEST} are needed at least", "", table.path)
-    hours, temperature, loss, stress = (table.numbers(name) for name in (*NEEDED, given[0]))
+        raise InputError(f"give one of the columns {' and '.join(kinds)}; the columns are {wanted}", "", table.path)
+    fewest = FEWEST_POINTS if points else FEWEST
+    if len(table.rows) < fewest:
+        raise InputError(f"has {len(table.rows)} readings; {fewest} are needed at least", "", table.path)
+    temperature, loss, stress = (table.numbers(name) for name in ("temperature", "loss", given[0]))
+    printed = points and "hours" not in table.names
+    hours = np.full(len(loss), CATALOGUE_HOURS) if printed else table.numbers("hours")
     for name, values, low, high in (
         ("hours", hours, 0.0, 1e7),
         ("temperature", temperature, 0.0, 2000.0),
@@ -66,4 +81,4 @@ def read_relaxation(path: str | Path) -> Readings:
                 f"line {table.rows[k][0]}, column {name}",
                 table.path,
             )
-    return Readings(STRESSES[given[0]], stress, temperature, hours, loss)
+    return Readings(kinds[given[0]], stress * (per_force or 1.0), temperature, hours, loss)

@@ -149,6 +149,17 @@ class Heating(Strict):
     ]
 
 
+Ends = Annotated[tuple[float, float], Field(strict=False, description="the least and the greatest")]
+
+
+class CreepTests(Strict):
+    """What the constants of creep are known for: the range of the tests that they are from."""
+
+    temperature: Annotated[Ends, Unit("K"), Field(description="least and greatest temperature, K")]
+    stress: Annotated[Ends, Unit("N/mm²"), Field(description="least and greatest equivalent stress, N/mm²")]
+    hours: Annotated[Ends, Unit("h"), Field(description="least and greatest time, h")]
+
+
 class Creep(Strict):
     """Creep: c = strain · (σ/stress)^exponent · (t/1 h)^time_exponent, or with sinh(σ/stress); equivalent values."""
 
@@ -174,6 +185,10 @@ class Creep(Strict):
         float, Unit("J/mol"), Field(ge=0, description="activation energy, which scales time with temperature, J/mol")
     ] = 0.0
     temperature: Annotated[float, Unit("K"), Field(gt=0, description="the temperature of these constants, K")] = 293.15
+    tests: Annotated[
+        CreepTests | None,
+        Field(description="range of the tests that the constants are from; a run that goes beyond it warns"),
+    ] = None
 
 
 class RateDependence(Strict):

@@ -51,15 +51,16 @@ class Saved:
 
 
 class Checkpoint:
-    """The folder `checkpoint` of a results folder.
+    """The folder `checkpoint` of a results folder, or `checkpoint-N` of its Nth finer run.
 
     Args:
         folder: the results folder.
         case: Case.
+        finer: number of the finer run (coilset.model.run.refinement), 0 for the case itself.
     """
 
-    def __init__(self, folder: str | Path, case: Case) -> None:
-        self.folder = Path(folder) / "checkpoint"
+    def __init__(self, folder: str | Path, case: Case, finer: int = 0) -> None:
+        self.folder = Path(folder) / (f"checkpoint-{finer}" if finer else "checkpoint")
         self.case, self.provenance = case.model_dump(mode="json"), provenance(case)
         self.journal, self.state = StepJournal(self.folder / "steps.jsonl"), TwoFiles(self.folder / "state.npz")
         self._snapshots = 0  # that are written, or were read
@@ -97,9 +98,13 @@ class Checkpoint:
         """Nothing more will be saved."""
         self.state.over()
 
+    def exists(self) -> bool:
+        """Whether there is something to resume from."""
+        return self.state.path.exists()
+
     def require(self) -> None:
         """Raise InputError if there is nothing to resume from."""
-        if not self.state.path.exists():
+        if not self.exists():
             raise InputError("there is no checkpoint to continue from; run it without --resume", "", self.folder)
 
     # ---- resuming --------------------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section.ground import section_points
 from coilset.model.section.rules import SURFACE_POINTS
 
+DRAWN = 144  # points on the outline of a wire that is not round
 RESULTANTS = ["N", "Q2", "Q3", "Mt", "M2", "M3"]
 
 
@@ -57,6 +58,10 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "section_kind": setup.section_kind,
         },
     )
+    if rule.outline is not None:
+        about = {"about": "points of the wire's outline, y and z in wire radii"}
+        corners = Variable(("corner", "direction"), rule.outline.boundary.points(DRAWN), about)
+        data = data.merged(LabelledData({"outline": corners}, {}))
     others = (way_of_wire(result), pressure_along_wire(setup, result), _mode(result), working_surface(setup, result))
     for other in others:
         data = data.merged(other)

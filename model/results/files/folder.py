@@ -13,7 +13,7 @@ from typing import Any
 from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.results.records.record import SeatReactions, Step
 
-RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint/*.npz", "checkpoint/*.jsonl")
+RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint*/*.npz", "checkpoint*/*.jsonl")
 DERIVED = (
     "fields/*.vtu",
     "fields/*.pvd",

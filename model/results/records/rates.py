@@ -1,4 +1,4 @@
-"""Rates of a spring from its characteristic: as spring makers measure it, and at given travels."""
+"""Rates of a spring from its characteristic: as spring makers measure it, at given travels, in torsion and tension."""
 
 from collections.abc import Sequence
 from itertools import dropwhile
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.results.records.record import Result, Setup, Step
-from coilset.model.results.records.releases import Release
+from coilset.model.results.records.releases import Release, is_turned
 
 MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
 STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less changes nothing
@@ -94,3 +94,59 @@ def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, An
             for at in setup.rates_at
         ),
     }
+
+
+def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
+    """Entries of the summary of a spring that is loaded by a torque about its axis; None of any other.
+
+    Args:
+        setup: Setup.
+        result: Result.
+        release: the last release, if there was one.
+    """
+    names = "turn_max_deg", "torque_max_Nmm", "turn_rate_Nmm_per_deg", "turn_rate_after_Nmm_per_deg", "turn_set_deg"
+    if not is_turned(setup, result.steps):
+        return dict.fromkeys(names)
+    steps = result.steps
+    first = next(step for step in steps if step.turn_deg)
+    after = None
+    if release is not None:
+        loaded = [step for step in steps if step.phase < release.phase]
+        if loaded and loaded[-1].turn_deg != release.step.turn_deg:
+            freed = loaded[-1].turn_deg - release.step.turn_deg
+            after = (loaded[-1].torque_Nmm - release.step.torque_Nmm) / freed
+    values = (
+        max((step.turn_deg for step in steps), key=abs),
+        max((step.torque_Nmm for step in steps), key=abs),
+        first.torque_Nmm / first.turn_deg,
+        after,
+        release.step.turn_deg if release else None,
+    )
+    return dict(zip(names, values, strict=True))
+
+
+def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
+    """Entries of the summary of a spring whose coils are wound onto each other: F0 before and after, N, and rate.
+
+    The line of an open spring, F = F0 + R s, by the first two steps without contact, and by the last two of the last
+    release, is followed back to the height at which the coils touched at the start.
+    """
+    names = "initial_tension_N", "initial_tension_after_N", "open_rate_N_per_mm"
+    if not setup.wound_solid:
+        return dict.fromkeys(names)
+    pulled = [step for step in result.steps if step.force_N < 0.0 and not step.contacts]
+    before, rate = _line([step for step in pulled if step.phase == pulled[0].phase][:2] if pulled else [])
+    after = None
+    if release is not None:
+        back = [step for step in result.steps if step.phase == release.phase and not step.contacts]
+        after = _line(back[-2:])[0]
+    return dict(zip(names, (before, None if after is None else max(after, 0.0), rate), strict=True))
+
+
+def _line(steps: Sequence[Step]) -> tuple[float | None, float | None]:
+    """Pull at no travel, N, and rate, N/mm, of the line through two steps; None without two."""
+    if len(steps) < 2 or steps[0].travel_mm == steps[1].travel_mm:
+        return None, None
+    (a, f), (b, g) = ((step.travel_mm, step.force_N) for step in steps)
+    rate = (g - f) / (b - a)
+    return rate * a - f, rate

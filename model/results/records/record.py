@@ -12,6 +12,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
 from coilset.model.fatigue.strength import Strength
+from coilset.model.material.law.file import CreepTests
 from coilset.model.results.records.frame import Frame
 from coilset.model.rod.elements import Element
 from coilset.model.section import surface
@@ -253,6 +254,7 @@ class Limits:
             not estimated.
         shear: shear stress allowed at block for a wire of a standard, MPa; None: no such wire is named.
         shear_of: which stress it limits, `corrected stress` or `uncorrected stress`.
+        creep: range of the tests that the constants of creep are from, None if it is unknown or nothing creeps.
     """
 
     plastic_work: float
@@ -261,6 +263,7 @@ class Limits:
     accuracy: float | None
     shear: float | None = None
     shear_of: str = ""
+    creep: CreepTests | None = None
 
 
 @dataclass(frozen=True)
@@ -285,6 +288,7 @@ class Setup:
         warnings: Warnings about the case, before it ran.
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
         force_line: ForceLine, or None.
+        wound_solid: whether coils press on each other before any load.
         strength: Strength of the wire in fatigue, or None.
     """
 
@@ -305,6 +309,7 @@ class Setup:
     warnings: tuple[Warning, ...] = ()
     coiling_diameter: float | None = None
     force_line: ForceLine | None = None
+    wound_solid: bool = False
     strength: Strength | None = None
 
     @property

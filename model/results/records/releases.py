@@ -1,10 +1,11 @@
 """The releases of a run: the moments at which a loaded spring is free of load again."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 
+TURNED = 2.0  # torque over force times coil radius from which a spring is loaded by the torque about its axis
 FREE = 1e-6  # of the maximum force so far: a spring under less is free of load
 
 
@@ -43,13 +44,27 @@ def last_release(setup: Setup, result: Result) -> Release | None:
     return next(reversed(releases(setup, result)), None)
 
 
+def is_turned(setup: Setup, steps: Sequence[Step]) -> bool:
+    """Whether a run loads its spring by a torque about the axis, as a torsion spring, and not by a force along it."""
+    torque, force = (max((abs(getattr(one, name)) for one in steps), default=0.0) for name in ("torque_Nmm", "force_N"))
+    return torque > TURNED * 0.5 * setup.mean_diameter * force
+
+
+def load_of(setup: Setup, steps: Sequence[Step]) -> Callable[[Step], float]:
+    """What loads a spring after a step: the magnitude of its axial force, N, or of its torque, N mm."""
+    if is_turned(setup, steps):
+        return lambda step: abs(step.torque_Nmm)
+    return lambda step: abs(step.force_N)
+
+
 def _released(setup: Setup, result: Result) -> Iterator[Release]:
+    load = load_of(setup, result.steps)
     number_of_phases = len(result.snapshots) - 1
     for phase, snapshot in enumerate(result.snapshots[1:]):
         steps = [step for step in result.steps if step.phase <= phase]
-        maximum = max((abs(step.force_N) for step in steps), default=0.0)
+        maximum = max(map(load, steps), default=0.0)
         ends = phase == number_of_phases - 1
-        if not steps or steps[-1].lift_off_mm or abs(snapshot.force) > FREE * maximum or not (maximum or ends):
+        if not steps or steps[-1].lift_off_mm or load(steps[-1]) > FREE * maximum or not (maximum or ends):
             continue
         length = setup.outer_length(snapshot.x)
         yield Release(phase, snapshot, steps[-1], length, setup.spring.free_length - length)

@@ -1,5 +1,6 @@
 """The summary of a run."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import asdict
 from math import isfinite
@@ -10,9 +11,9 @@ import numpy as np
 from coilset.model.base.errors import InputError
 from coilset.model.results.fatigue import fatigue
 from coilset.model.results.records.buckling import buckling
-from coilset.model.results.records.rates import rates
+from coilset.model.results.records.rates import rates, tension, turning
 from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
-from coilset.model.results.records.releases import Release, releases
+from coilset.model.results.records.releases import Release, is_turned, releases
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.results.records.working import WorkingState, plastic_rise, working_numbers
@@ -61,8 +62,13 @@ def summary(setup: Setup, result: Result) -> Summary:
         shear_inside_max_MPa=max(shear_inside(setup, one)[0] for one in result.snapshots),
         **peaks(setup, "residual_", [shot] if shot else []),
         **peaks(setup, "", result.snapshots),
+        **bending(setup, "residual_", [shot] if shot else []),
+        **bending(setup, "max_", result.snapshots),
+        inner_diameter_min_mm=min(inner_diameter(setup, one) for one in result.snapshots),
+        **turning(setup, result, release),
+        **tension(setup, result, release),
         **plastic_work(setup, result),
-        **estimated_errors(result),
+        **estimated_errors(setup, result),
         working=working_entries(setup, result),
         working_set_mm=result.working.set if result.working else None,
         fatigue=fatigue(setup, result),
@@ -104,9 +110,12 @@ def _release(release: Release) -> dict[str, Any]:
     }
 
 
-def estimated_errors(result: Result) -> dict[str, Any]:
-    """Errors of maximum force, set and residual shear: in total, and by their causes; None where not estimated."""
-    errors = result.errors
+def estimated_errors(setup: Setup, result: Result) -> dict[str, Any]:
+    """Errors of maximum force, set and residual shear: in total, and by their causes; None where not estimated.
+
+    Nor are they in torsion, where axial force and loss of length are close to zero.
+    """
+    errors = None if is_turned(setup, result.steps) else result.errors
     total = Errors(None, None, None) if errors is None else errors.total
     return {
         "estimated_force_error_N": total.force_N,
@@ -159,6 +168,28 @@ def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
     size = np.abs(values)
     at = int(np.argmax(size >= (1.0 - surface.TIE) * size.max()))
     return float(values[at]), float(setup.section_turns[among][at])
+
+
+def bending(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+    """Stress along the wire on the surface at the inside and the outside of the coil, MPa, positive in tension.
+
+    Of each the value of largest magnitude in the middle turns and the snapshots; None without snapshots.
+    """
+    found: dict[str, Any] = {}
+    for name, angle in (("inside", 0.0), ("outside", math.pi)):
+        values = []
+        for shot in snapshots:
+            along = surface.component(shot.surface_state, shot.components, "s11")[is_middle(setup)]
+            place = round((setup.inside.angle + angle) / (2.0 * math.pi) * along.shape[-1]) % along.shape[-1]
+            values += [float(along[..., place].min()), float(along[..., place].max())]
+        found[f"{prefix}bending_{name}_MPa"] = max(values, key=abs, default=None)
+    return found
+
+
+def inner_diameter(setup: Setup, snapshot: Snapshot) -> float:
+    """Diameter of the largest arbor about the axis that the coils leave room for, mm."""
+    radius = 0.5 * setup.spring.wire_diameter(setup.turns)
+    return 2.0 * float((np.hypot(snapshot.x[:, 0], snapshot.x[:, 1]) - radius).min())
 
 
 def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:

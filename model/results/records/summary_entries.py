@@ -103,6 +103,40 @@ class Summary:
     )
     equivalent_surface_max_turn: float | None = entry("turns", "its turn", of_slice=False)
     equivalent_surface_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
+    residual_bending_inside_MPa: float | None = entry(
+        "MPa",
+        "stress along the wire on the surface at the inside of the coil after release, in the middle turns, where its "
+        "magnitude is largest; positive in tension",
+        of_slice=False,
+    )
+    residual_bending_outside_MPa: float | None = entry("MPa", "the same at the outside of the coil", of_slice=False)
+    max_bending_inside_MPa: float | None = entry("MPa", "that at the inside in any snapshot", of_slice=False)
+    max_bending_outside_MPa: float | None = entry("MPa", "that at the outside in any snapshot", of_slice=False)
+    inner_diameter_min_mm: float = entry(
+        "mm", "diameter of the largest arbor that the coils leave room for in all snapshots", of_slice=False
+    )
+    turn_max_deg: float | None = entry(
+        "degrees",
+        "largest rotation of the top head against the bottom one; `null`, as the next four, unless a torque loads the "
+        "spring",
+        of_slice=False,
+    )
+    torque_max_Nmm: float | None = entry("N mm", "largest torque about the spring's axis", of_slice=False)
+    turn_rate_Nmm_per_deg: float | None = entry("N mm/°", "torque over rotation in the first step", of_slice=False)
+    turn_rate_after_Nmm_per_deg: float | None = entry(
+        "N mm/°", "torque over the rotation that the last release gives back", of_slice=False
+    )
+    turn_set_deg: float | None = entry("degrees", "rotation that remains after the last release", of_slice=False)
+    initial_tension_N: float | None = entry(
+        "N",
+        "F0 of coils that are wound onto each other: the line of the open spring in the first pull, at its closed "
+        "length; `null`, as the next two, without `spring.initial_tension`",
+        of_slice=False,
+    )
+    initial_tension_after_N: float | None = entry(
+        "N", "F0 by the line of the last release; 0 if the coils stay open", of_slice=False
+    )
+    open_rate_N_per_mm: float | None = entry("N/mm", "rate once the coils are open, in the first pull", of_slice=False)
     plastic_work_max_N_per_mm2: float = entry("N/mm²", "maximum plastic work b* on the surface")
     plastic_work_max_turn: float | None = entry("turns", "its turn", of_slice=False)
     plastic_work_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)

@@ -11,6 +11,7 @@ UNITS = {
     "_turns": "1",
     "hours": "h",
     "_K": "K",
+    "_Nmm_per_deg": "N mm/°",
     "_deg": "degrees",
     "_turn": "1",
     "_percent": "%",

@@ -9,7 +9,7 @@ from coilset.model.results.fatigue import fatigue_warnings
 from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
-from coilset.model.results.records.releases import FREE, last_release
+from coilset.model.results.records.releases import FREE, is_turned, last_release
 from coilset.model.results.records.working import working_warnings
 from coilset.model.section import surface
 from coilset.model.standards.working import presetting_warning
@@ -20,6 +20,7 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 WALL = 20.0
 WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is asked for
 LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
+ROUNDING = 1e-3  # by which a limit that is given with few digits may be exceeded
 NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
@@ -204,6 +205,8 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     if asked is None or top is None or not top.force_N:
         return
+    if is_turned(setup, result.steps):  # these errors are those of a force along the axis, here close to zero
+        return
     if top.steps_force_error_N is None:
         if not abs(top.force_N) <= FREE * result.rate * setup.spring.free_length:  # also where the rate is not known
             message = (
@@ -223,6 +226,30 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
         yield warning
 
 
+def _creep(setup: Setup, result: Result) -> Iterator[Warning]:
+    """Time that passes hotter, at more stress or for longer than in the tests that the constants of creep are from."""
+    tests = setup.limits.creep
+    if tests is None:
+        return
+    before = [0.0, *(step.hours for step in result.steps)]
+    timed = [step for step, hours in zip(result.steps, before, strict=False) if step.hours > hours]
+    if not timed:
+        return
+    shots = [result.snapshots[phase] for phase in {step.phase for step in timed} if phase < len(result.snapshots)]
+    reached = (
+        ("temperature", "K", max(step.temperature_K for step in timed), tests.temperature),
+        ("equivalent stress", "N/mm²", max((_equivalent(shot) for shot in shots), default=0.0), tests.stress),
+        ("time", "h", timed[-1].hours, tests.hours),
+    )
+    for name, unit, value, (least, most) in reached:
+        if value > most * (1.0 + ROUNDING):
+            message = (
+                f"the {name} is {value:.5g} {unit}, but the constants of creep are from tests of {least:g} to {most:g} "
+                f"{unit}: the load loss is extrapolated"
+            )
+            yield Warning("creep", name, message, value, most, unit)
+
+
 MORE = {
     "mesh": "more mesh.elements_per_turn reduce it",
     "section": "more points, mesh.section.radial and angular, reduce it",
@@ -232,33 +259,46 @@ MORE = {
 """What makes an error smaller, by its cause."""
 
 
+def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
+    """Errors by the requested accuracy of the numbers that it governs, by their names in Errors; of a set, at least
+    one that is noticed.
+
+    Args:
+        setup: Setup of a run that estimates errors.
+        result: Result with steps.
+    """
+    asked, release = setup.limits.accuracy or 0.0, last_release(setup, result)
+    found = {"force_N": asked * result.greatest_force}
+    if release is not None and release.set > 0.0:
+        found["set_mm"] = max(asked * release.set, NOTICED * setup.spring.free_length)
+    return {name: error for name, error in found.items() if error > 0.0}
+
+
 def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
     """The numbers whose error by all causes is above the accuracy that was asked for, unless the steps alone are."""
     asked, errors = setup.limits.accuracy, result.errors
     if asked is None or errors is None or any(_step_error(setup, result)):
         return
-    release = last_release(setup, result)
-    values = {"force_N": result.greatest_force, "set_mm": 0.0 if release is None else release.set}
-    noticed = {"force_N": 0.0, "set_mm": NOTICED * setup.spring.free_length}
     worst: dict[str, float] = {}
-    for name, value in values.items():
+    for name, allowed in allowed_errors(setup, result).items():
         error = getattr(errors.total, name)
-        if value > 0.0 and error is None:
+        if error is None:
             message = (
                 f"the error of the {NUMBERS[name]} by mesh, section points and contact could not be estimated; compare "
                 "with a run of more mesh.elements_per_turn"
             )
             yield Warning("unknown error", "mesh", message, None, asked)
             return
-        if value > 0.0 and error > max(asked * value, noticed[name]):
-            worst[name] = error / value
+        if error > allowed:
+            worst[name] = asked * error / allowed
     if worst:
         largest = max(worst, key=lambda name: worst[name])
         cause = errors.largest(largest)
         which = " and ".join(f"{100 * part:.2g} % of the {NUMBERS[name]}" for name, part in worst.items())
         message = (
             f"the estimated error is {which}, mostly because of the {CAUSES[cause]}, more than the case's accuracy of "
-            f"{100 * asked:.2g} %; {MORE[cause]}"
+            f"{100 * asked:.2g} %; {MORE[cause]}, and coilset solve runs again by itself where the case leaves that "
+            "out and it suffices"
         )
         yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], asked)
 
@@ -291,6 +331,7 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
 FOUND: tuple[Check, ...] = (
     _strength,
+    _creep,
     _step_error,
     _whole_error,
     _presetting,

@@ -20,7 +20,8 @@ def compare(folder: str, out: str | None, force: bool) -> None:
     """
     name = Path(folder).resolve().name
     target = results_folder(out, name, "compare")
-    rows = run_and_compare(folder, target, force)
+    found = run_and_compare(folder, target, force)
+    rows = found.rows
     table = Table("quantity", "measured", "±", "computed", "±", "measured/computed", "", box=None, padding=(0, 2))
     for row in rows:
         error = "–" if row.computed_error != row.computed_error else f"{row.computed_error:.2g}"
@@ -30,5 +31,5 @@ def compare(folder: str, out: str | None, force: bool) -> None:
     console.print(table)
     console.print(f"{sum(row.met for row in rows)} of {len(rows)} numbers met: they differ by no more than both errors")
     make(target)
-    save(figure(rows, name), target / "comparison.png")
+    save(figure(found, name), target / "comparison.png")
     console.say(f"results and comparison.png in {target}")

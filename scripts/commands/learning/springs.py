@@ -1,5 +1,6 @@
 """`coilset material fit --spring`: constants of a wire from springs that were pressed and released."""
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -96,16 +97,27 @@ def _read(paths: list[str]) -> "list[Pressing]":
     from coilset.model.calibration.pressing import read_pressing
     from coilset.model.case import read_case
 
-    found, waiting = [], []
+    found = []
+    for path, case in with_cases(paths):
+        if case is None:
+            raise InputError("no case file of its spring follows; give press.csv spring.yaml", FLAG, path)
+        found.append(read_pressing(path, read_case(case)))
+    return found
+
+
+def with_cases(paths: Sequence[str]) -> Iterator[tuple[str, str | None]]:
+    """Each tester's file with the case file (YAML) of its spring, the next one after it; None if there is none.
+
+    Raises:
+        InputError: a case file that no other file stands before.
+    """
+    waiting: list[str] = []
     for path in paths:
         if Path(path).suffix.lower() not in (".yaml", ".yml"):
             waiting.append(path)
             continue
         if not waiting:
-            raise InputError("no tester's file stands before it; give press.csv spring.yaml", FLAG, path)
-        case = read_case(path)
-        found += [read_pressing(one, case) for one in waiting]
+            raise InputError("no tester's file stands before it; give press.csv spring.yaml", "", path)
+        yield from ((one, path) for one in waiting)
         waiting = []
-    if waiting:
-        raise InputError("no case file of its spring follows; give press.csv spring.yaml", FLAG, waiting[0])
-    return found
+    yield from ((one, None) for one in waiting)

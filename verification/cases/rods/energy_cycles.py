@@ -27,7 +27,7 @@ from coilset.model.results.records.record import Step
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
 
-FAST = True
+FAST = False
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
 CYCLES: dict[str, tuple[str, str | dict[str, float], float]] = {
     "clamped, 12 mm": ("clamped", {"travel": 12.0}, 1e-4),

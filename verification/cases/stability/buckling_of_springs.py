@@ -29,7 +29,7 @@ from coilset.verification.references.stability import clamped_spring
 from coilset.verification.stability import lowest_eigenvalue, negative_pivots, tangent
 from coilset.verification.study import Study
 
-FAST = True
+FAST = False
 WIRE, DIAMETER, TURNS, PITCH = 5.0, 40.0, 40, 12.0  # mm
 LAST, STEPS = 38.0, 19  # mm of travel
 MESHES = (8, 16)

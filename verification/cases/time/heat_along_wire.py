@@ -32,7 +32,7 @@ from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
 
-FAST = True
+FAST = False
 LENGTH, RADIUS, LONG = 200.0, 2.5, 1e9  # mm, s
 FIN = HeatConstants(capacity=3.6, conductivity=50.0, convection=0.02, tips=300.0, surroundings=300.0)
 HEAT = 5.0  # N/s, of a length

@@ -42,7 +42,7 @@ from coilset.verification.references import creeping_ring, relaxing_bar
 from coilset.verification.sections.helix import WIRE, HelixSection
 from coilset.verification.study import Study
 
-FAST = True
+FAST = False
 INDICES = (4.0, 8.0, 12.0, 20.0, 50.0)
 SMALL = 0.01  # of the stress in springs
 AT = [int(np.argmin(np.abs(np.log(HOURS / hours)))) for hours in JUDGED]

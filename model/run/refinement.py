@@ -1,0 +1,156 @@
+"""Runs a case again, finer, where its estimated errors exceed its accuracy and what is too coarse was left to coilset.
+
+An error falls with a power of the factor by which its cause is made finer: that of the mesh between the first and the
+second (docs/rod.md), of the section's points with the second, of contact with the power 0.6 of its bedding's stiffness,
+and that of all steps with the power 2/3 of what one of them may bring in. What a case gives itself is kept. Nothing is
+run again where the accuracy would not be reached within `FINEST`: many times the cost for a number still wrong.
+"""
+
+import logging
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from coilset.meshes.springs.shapes import Table
+from coilset.model.base.errors import SolveError
+from coilset.model.case import Case
+from coilset.model.contact.build import bedding_of
+from coilset.model.results.records.record import RunErrors
+from coilset.model.results.records.warnings import allowed_errors
+from coilset.model.run.analysis import Analysis
+
+log = logging.getLogger("coilset.steps")
+
+ROUNDS = 2  # of finer runs at most
+AIM = 0.9  # of the accuracy, to which a finer run is to come
+SMALL = 0.2  # of the accuracy: a cause with less is left as it is
+ORDERS = {"steps": 2.0 / 3.0, "mesh": 1.5, "section": 2.0, "contact": 0.6}
+FINEST = {"steps": 30.0, "mesh": 4.0, "section": 3.0, "contact": 30.0}
+"""Greatest factor of what is made finer, in one round."""
+MOST_RINGS, MOST_ANGLES = 64, 256  # that a case may have
+
+
+@dataclass(frozen=True)
+class Finer:
+    """A case to be run again.
+
+    Attributes:
+        case: Case.
+        changes: what is finer, in words.
+    """
+
+    case: Case
+    changes: str
+
+
+def within_accuracy(first: Analysis, run: Callable[[Analysis, str], object]) -> Analysis:
+    """Run an analysis, and again finer, until its estimated errors are within its accuracy; collective.
+
+    Args:
+        first: Analysis.
+        run: runs one; the text says what is finer than in the one before, empty for the first.
+
+    Returns:
+        The last analysis whose run is complete. Where a finer one finds no equilibrium, a warning is logged.
+
+    Raises:
+        SolveError: the first found no equilibrium.
+    """
+    run(first, "")
+    analysis, left = first, left_open(first.case)
+    for _ in range(ROUNDS):
+        finer = finer_case(analysis, left)
+        if finer is None:
+            break
+        again = Analysis(finer.case, analysis.comm, threads=first.threads, **first.further)
+        try:
+            run(again, finer.changes)
+        except SolveError as error:
+            log.warning("the run with %s ended early and is discarded: %s", finer.changes, error)
+            break
+        analysis = again
+    return analysis
+
+
+def finer_case(analysis: Analysis, left: set[str]) -> Finer | None:
+    """The case with which the errors of a complete run would be within its accuracy; None if they are, or cannot be;
+    collective.
+
+    Args:
+        analysis: of the run.
+        left: causes that may be made finer.
+    """
+    setup, result, comm = analysis.setup, analysis.result, analysis.comm
+    if result.errors is None:
+        return None
+    allowed = comm.bcast(allowed_errors(setup, result) if comm.rank == 0 else None)
+    factors = needed(result.errors, allowed, left)
+    return _finer(analysis, factors) if factors else None
+
+
+def left_open(case: Case) -> set[str]:
+    """The causes of errors whose entries a case leaves to coilset."""
+    mesh, section = case.mesh, case.mesh.section
+    given = {
+        "steps": any(getattr(phase, "steps", "auto") != "auto" for phase in case.loading),
+        "mesh": "elements_per_turn" in mesh.model_fields_set or mesh.sagitta is not None,
+        "section": bool(section.model_fields_set & {"rule", "radial", "angular"}),
+        "contact": case.contact.bedding is not None,
+    }
+    return {cause for cause, is_given in given.items() if not is_given}
+
+
+def needed(errors: RunErrors, allowed: Mapping[str, float], left: set[str]) -> dict[str, float]:
+    """By what factor each cause must be finer; empty if nothing need be, or if it would not suffice.
+
+    Args:
+        errors: of the run.
+        allowed: errors by the accuracy, by their names in Errors.
+        left: causes that may be made finer.
+    """
+    factors: dict[str, float] = {}
+    for name, most in allowed.items():
+        parts = {cause.name: getattr(getattr(errors, cause.name), name) for cause in fields(RunErrors)}
+        if None in parts.values():
+            return {}
+        if sum(parts.values()) <= most:
+            continue
+        lowered = {cause for cause in left if parts[cause] > SMALL * most}
+        kept = sum(part for cause, part in parts.items() if cause not in lowered)
+        rest = sum(parts[cause] for cause in lowered)
+        share = (AIM * most - kept) / rest if rest else 0.0
+        if share <= 0.0:
+            return {}
+        for cause in lowered:
+            factors[cause] = max(factors.get(cause, 1.0), share ** (-1.0 / ORDERS[cause]))
+    return {} if any(factor > FINEST[cause] for cause, factor in factors.items()) else factors
+
+
+def _finer(analysis: Analysis, factors: Mapping[str, float]) -> Finer:
+    """The case of an analysis, finer by the factors of its causes."""
+    case, words, update = analysis.case, [], dict[str, Any]()
+    mesh = dict[str, Any]()
+    if "mesh" in factors:
+        density = case.mesh.elements_per_turn
+        assert not isinstance(density, Table)  # the case gives none
+        mesh["elements_per_turn"] = elements = 4.0 * math.ceil(factors["mesh"] * density / 4.0)
+        words.append(f"{elements:g} elements per turn")
+    if "section" in factors:
+        section, angles = case.mesh.section, len(case.section_rule) // case.mesh.section.radial
+        radial, angular = (math.ceil(factors["section"] * count / 2.0) * 2 for count in (section.radial, angles))
+        radial, angular = min(radial, MOST_RINGS), min(angular, MOST_ANGLES)
+        mesh["section"] = section.model_copy(update={"radial": radial, "angular": angular})
+        words.append(f"{radial} × {angular} points per section")
+    if mesh:
+        update["mesh"] = case.mesh.model_copy(update=mesh)
+    if "contact" in factors:
+        bedding = factors["contact"] * bedding_of(case.contact, analysis.law.E)
+        update["contact"] = case.contact.model_copy(update={"bedding": bedding})
+        words.append(f"contact.bedding {bedding:.3g} N/mm²")
+    if "steps" in factors:
+        control = case.solver.control
+        steps = replace(control.steps, step_share=control.steps.step_share / factors["steps"])
+        update["solver"] = case.solver.model_copy(update={"control": control.model_copy(update={"steps": steps})})
+        words.append(f"steps of {100.0 / factors['steps']:.0f} % of the error")
+    return Finer(case.model_copy(update=update), ", ".join(words))

@@ -1,0 +1,53 @@
+"""Relaxation tests, catalogue points and load losses of springs from files, for `coilset material creep`."""
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from coilset.scripts.commands.learning.springs import with_cases
+
+if TYPE_CHECKING:
+    from coilset.model.material.identification.creep_fit import CreepFit
+    from coilset.model.material.identification.relaxation_tests import Readings
+
+
+def read(paths: Sequence[str], points: bool) -> "tuple[Readings, ...]":
+    """The tests of all files; forces of a spring, whose case file follows, as shear stress 8 F D/(π d³).
+
+    The stress is that of a straight bar, as the fit is: the curvature of a coil is left out.
+
+    Raises:
+        InputError: a file is wrong.
+    """
+    from math import pi
+
+    from coilset.model.case import read_case
+    from coilset.model.material.identification.relaxation_tests import read_relaxation
+    from coilset.model.uniform.equivalent import coil
+
+    found = []
+    for path, case in with_cases(paths):
+        per_force = None
+        if case is not None:
+            d, D, _, _ = coil(read_case(case).spring.build())
+            per_force = float(8.0 * D / (pi * d**3))
+        found.append(read_relaxation(path, points, per_force))
+    return tuple(found)
+
+
+def words(fit: "CreepFit", error: float | None) -> Iterator[str]:
+    """How well the law follows the readings, and what it is known for."""
+    scatter = f"residual {fit.scatter:.2g} % of the load"
+    if fit.scatter != fit.scatter:
+        scatter = "as many readings as constants"
+    yield scatter if error is None else f"{scatter}; the intervals are those of an error of {error:g} % of the load"
+    if fit.beyond:
+        yield (
+            "warning: the residuals are larger than this error allows, and the intervals are theirs: the law does not "
+            "follow the readings"
+        )
+    known = fit.range
+    ends = {name: f"{low:g} to {high:g}" if low < high else f"{low:g}" for name, (low, high) in known.items()}
+    yield (
+        f"known for {ends['temperature']} K, equivalent stresses of {ends['stress']} N/mm² and {ends['hours']} h: "
+        "a run that goes beyond warns"
+    )

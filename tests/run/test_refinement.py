@@ -1,0 +1,83 @@
+"""Finer runs: what is made finer, by how much, and what is kept."""
+
+import json
+
+import pytest
+from mpi4py import MPI
+
+from coilset.model.case import read_case
+from coilset.model.results.records.record import Errors, RunErrors
+from coilset.model.run.refinement import left_open, needed
+from coilset.scripts.commands.solve import solve
+from coilset.scripts.interrupt import Interrupt
+
+ALL = {"steps", "mesh", "section", "contact"}
+FINE = ["mesh={}", "ends=clamped", "accuracy=0.01 %", "loading=[{to: {travel: 14}}, {to: {force: 0}}]"]
+
+
+def errors(steps, mesh, section, contact):
+    """Of the force."""
+    return RunErrors(*(Errors(part, None, None) for part in (steps, mesh, section, contact)))
+
+
+def test_only_what_counts_is_made_finer_by_its_order():
+    found = needed(errors(0.05, 1.0, 0.02, 0.5), {"force_N": 1.0}, ALL)
+    assert found.keys() == {"mesh", "contact"}
+    share = (0.9 - 0.07) / 1.5  # of both errors may be left
+    assert found["mesh"] ** -1.5 == pytest.approx(share)
+    assert found["contact"] ** -0.6 == pytest.approx(share)
+
+
+@pytest.mark.parametrize(
+    ("parts", "left"),
+    [
+        ((0.1, 0.5, 0.1, 0.1), ALL),  # accurate
+        ((0.1, 9.0, 0.1, 0.1), ALL),  # four times as many elements would not do
+        ((0.1, 2.0, 0.1, 0.1), ALL - {"mesh"}),  # the mesh is given
+        ((0.1, None, 0.1, 0.1), ALL),  # not known
+    ],
+)
+def test_nothing_is_run_again_where_it_need_not_or_would_not_suffice(parts, left):
+    assert needed(errors(*parts), {"force_N": 1.0}, left) == {}
+
+
+def test_entries_of_the_case_are_kept(example):
+    plain = ["mesh={}", "loading=[{to: block}]"]
+    assert left_open(read_case(example, plain)) == ALL
+    assert left_open(read_case(example, [*plain, "mesh.elements_per_turn=16"])) == ALL - {"mesh"}
+    assert left_open(read_case(example, [*plain, "mesh.section.radial=8"])) == ALL - {"section"}
+    assert left_open(read_case(example, [*plain, "contact.bedding=5000"])) == ALL - {"contact"}
+    assert left_open(read_case(example, ["mesh={}", "loading=[{to: block, steps: 4}]"])) == ALL - {"steps"}
+
+
+def test_a_finer_run_is_within_the_accuracy_and_can_be_continued(example, tmp_path, monkeypatch):
+    """Ended in the finer run, after which the results are those of the first; continued, to the same bits."""
+    counts = []
+
+    def solved(name, last=10_000, resume=False):
+        checks = iter(range(last))
+        with monkeypatch.context() as patched:
+            patched.setattr(Interrupt, "check", lambda self: next(checks, None) is None and _interrupt())
+            solve(example, tmp_path / name, False, FINE, False, resume, comm=MPI.COMM_SELF, voice="quiet")
+        counts.append(next(checks, last))
+        return summary(name)
+
+    def summary(name):
+        found = json.loads((tmp_path / name / "summary.json").read_text())
+        return found | {"origin": found["origin"]["case"]}  # without the time
+
+    whole = solved("whole")
+    assert whole["estimated_force_error_N"] < 1e-4 * whole["force_max_N"]
+    mesh = whole["origin"]["mesh"]
+    assert mesh["elements_per_turn"] > 16.0
+    assert mesh["section"]["radial"] > 8
+    assert not [one for one in whole["warnings"] if one["name"] == "error"]
+    with pytest.raises(KeyboardInterrupt):
+        solved("ended", counts[0] - 5)
+    assert summary("ended")["origin"]["mesh"]["elements_per_turn"] == 16
+    assert solved("ended", resume=True) == whole
+    assert counts[1] < 10  # steps that were left
+
+
+def _interrupt():
+    raise KeyboardInterrupt
