@@ -267,13 +267,16 @@ def _known(value: float) -> float | None:
 
 
 def nominal(setup: Setup, force: float) -> tuple[float | None, float | None]:
-    """τ = 8 D F/(π d³) and τk = k τ of EN 13906-1, MPa; None of a spring that is no cylinder of one wire."""
+    """τ = 8 D F/(π d³) and τk = k τ of EN 13906-1, or D F/(2 W) of wire that is not round, MPa.
+
+    None of a spring that is no cylinder of one wire.
+    """
     try:
         cylinder = Cylinder.of(setup.spring)
     except InputError:
         return None, None
-    stress = en13906.stress(force, cylinder.d, cylinder.D)
-    return stress, en13906.stress_correction(cylinder.index) * stress
+    stress = en13906.stress(force, cylinder.of_stress, cylinder.D)
+    return stress, cylinder.correction * stress
 
 
 def _safety(setup: Setup, stress: float | None, corrected: float | None) -> float | None:
