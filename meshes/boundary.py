@@ -14,6 +14,8 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial import ConvexHull
 
+from coilset.meshes.springs import functions
+
 if TYPE_CHECKING:
     from coilset.meshes.section_shapes import Outline
 
@@ -82,7 +84,7 @@ class Boundary:
         """As `gauss`, with a number of points for each piece."""
         parts = []
         for piece, number in zip(self.pieces, along, strict=True):
-            x, w = np.polynomial.legendre.leggauss(number)
+            x, w = functions.gauss(number)
             parts.append((piece(0.5 * (x + 1.0)), piece(0.5 * (x + 1.0), 1), 0.5 * w))
         b, slope, dt = zip(*parts, strict=True)
         return np.concatenate(b), np.concatenate(slope), np.concatenate(dt)
@@ -90,7 +92,7 @@ class Boundary:
     @cached_property
     def lengths(self) -> np.ndarray:
         """Of the pieces, shape (pieces,)."""
-        x, w = np.polynomial.legendre.leggauss(MANY)
+        x, w = functions.gauss(MANY)
         return np.array([0.5 * w @ np.linalg.norm(p(0.5 * (x + 1.0), 1), axis=1) for p in self.pieces])
 
     @cached_property

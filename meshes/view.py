@@ -59,7 +59,8 @@ def picture(spring: Spring, path: str | Path) -> None:
     """Draw the spring as a PNG, seen from the side and slightly above; needs a display."""
     plotter = pv.Plotter(off_screen=True, window_size=(900, 900))
     plotter.set_background("white")
-    plotter.add_mesh(tube(spring), color="lightsteelblue", smooth_shading=True, specular=0.3)
+    edges = spring.section is not None  # sharp ones, of flats and corners
+    plotter.add_mesh(tube(spring), color="lightsteelblue", smooth_shading=True, split_sharp_edges=edges, specular=0.3)
     middle = 0.5 * spring.free_length
     plotter.camera_position = [(0, -10, middle + 3), (0, 0, middle), (0, 0, 1)]
     plotter.camera.parallel_projection = True

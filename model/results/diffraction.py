@@ -128,6 +128,8 @@ def _rod(data: xr.Dataset, turn: float, snapshot: str | int) -> Wire:
     turns = data["turn"].to_numpy()
     if not turns[0] <= turn <= turns[-1]:
         raise InputError(f"{turn:g} is not on the wire, which has {turns[-1] - turns[0]:g} turns", "turn")
+    if "outline" in data:
+        raise InputError("diffraction is for round wire; this run's is not", "run")
     shot = data.sel(snapshot=snapshot) if isinstance(snapshot, str) else data.isel(snapshot=snapshot)
     inside = Inside.of(data.attrs["section_kind"] != "plane", _hand(data))
     chords = np.linalg.norm(np.diff(data["position"].isel(snapshot=0).to_numpy(), axis=0), axis=1)

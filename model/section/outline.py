@@ -159,10 +159,11 @@ class Outlined(Section):
 
     def cut(self, level: float, normal: tuple[float, float]) -> "Outlined":
         """What a plane leaves of it, see `Segment`; itself if nothing is cut away."""
-        left = self.boundary.cut(max(level, DEEPEST), np.array(normal))
-        if left is self.boundary:
-            return self
-        return self._cuts.setdefault((level, *normal), Outlined(left))  # points and surface need the same
+        plane = (level, *normal)
+        if plane not in self._cuts:  # points and surface need the same
+            left = self.boundary.cut(max(level, DEEPEST), np.array(normal))
+            self._cuts[plane] = self if left is self.boundary else Outlined(left)
+        return self._cuts[plane]
 
     def _product(self, rings: int, along: list[int]) -> tuple[np.ndarray, np.ndarray]:
         """Gauss's points on rings, with a number on each piece of the outline, and their weights, as in `fine`.

@@ -6,6 +6,7 @@ without pitch, over F D/(2 W). With d⁴ = 32 J/π, d³ = 16 W/π and d² = 4 A/
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 from typing import Literal
 
@@ -41,6 +42,7 @@ class WireNumbers:
     in_plane: float
 
     @classmethod
+    @lru_cache(maxsize=64)  # of one sheet, its warnings and each working length
     def of(cls, boundary: Boundary, height: float, mean_diameter: float) -> "WireNumbers":
         """Of a section in half its height, a height and a mean diameter of the coil, mm."""
         section, r = Outlined(boundary), 0.5 * height

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from coilset.model.base.errors import CoilsetError
+from coilset.model.case import check
 from coilset.scripts.commands import bench as command
 from coilset.scripts.terminal import spring_costs
 from coilset.verification.benchmarks import springs
@@ -59,7 +60,8 @@ def test_checkouts_are_compared_where_springs_end_in_both():
 
 def test_the_command_runs_springs_in_two_checkouts(tmp_path, monkeypatch, capsys):
     """The processes of both sides, with small springs in place of random ones; this checkout is the other one, too."""
-    monkeypatch.setattr(springs, "random_spring", lambda number: SMALL)
+    case = SMALL | {"material": "ck15", "mesh": {"section": {"kind": "curved"}}}
+    monkeypatch.setattr(springs, "random_spring", lambda number: case)
     monkeypatch.setattr(springs, "features", lambda case: {"friction"})
     start = command.launchers()[0]
     monkeypatch.setattr(command, "launchers", lambda against: [start, start])
@@ -73,7 +75,16 @@ def test_the_command_runs_springs_in_two_checkouts(tmp_path, monkeypatch, capsys
 
 
 def test_a_process_that_dies_is_reported():
-    dead = springs.Side(["false"], {}, 1.0)
+    dead = springs.Side(["false"], {})
     dead.end()
     with pytest.raises(CoilsetError, match="ended"):
-        dead.press(SMALL)
+        dead.press(SMALL, 1.0)
+
+
+def test_each_law_and_kind_of_section_is_compiled_before_its_first_spring_is_timed():
+    """Spring 8 was taken for one beyond 60 s, all of which were spent on compiling its law."""
+    cases = [springs.random_spring(number) for number in (3, 4, 8, 62)]
+    short = [springs.warming(case) for case in cases]
+    assert [one["material"] for one in short] == ["ck15", "ck15", "chaboche", "chaboche"]
+    assert [one["mesh"]["section"]["kind"] for one in short] == ["curved", "curved", "curved", "plane"]
+    assert all(check(one).material == one["material"] for one in short)

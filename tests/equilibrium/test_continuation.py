@@ -1,6 +1,7 @@
 """Step control: cutting, growing, stations hit exactly, and what cannot be reached."""
 
 import logging
+import re
 
 import numpy as np
 import pytest
@@ -88,6 +89,9 @@ def test_an_impossible_target_is_given_up_with_all_that_was_reached(make, ends, 
     assert "\n" not in str(caught.value)
     result = analysis.result
     assert result.steps
+    reachable = re.search(r"; a force of ([\d.]+) N can be reached$", str(caught.value))
+    assert reachable is not None
+    assert 0.0 <= result.steps[-1].force_N / float(reachable[1]) - 1.0 < 1e-3
     assert not result.complete
     assert result.snapshots[-1].height == result.steps[-1].seat_height_mm > 5.0
     assert analysis.system.max_penetration <= 5e-4

@@ -115,8 +115,8 @@ WRONG = [
     ({"mean_diameter": CONE, "pitch": 4.5}, OVERLAP.format("0 and 1", "4.58")),
     (
         {"pitch": 5.0},
-        "spring: there is no travel: the free length is 35 mm, the block length 35 mm; wind it longer, an extension "
-        "spring by a few hundredths of its wire a turn",
+        "spring: there is no travel: the free length is 35 mm, the block length 35 mm; wind it longer, or give the "
+        "initial_tension of an extension spring",
     ),
     (
         {"free_length": 80.0},

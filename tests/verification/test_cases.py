@@ -22,10 +22,7 @@ def test_the_tables_of_the_thesis_are_among_the_fast_ones():
 
 
 @pytest.mark.parametrize("name", FAST)
-def test_fast_cases_are_within_tolerance(name, tmp_path, request):
-    if name == "table-6-1":
-        reason = "with spin, 105 of 9,000 increments of nearly neutral loading find no stress, from w/l = 0.375 on"
-        request.applymarker(pytest.mark.xfail(strict=True, raises=(SolveError, ValueError), reason=reason))
+def test_fast_cases_are_within_tolerance(name, tmp_path):
     study = Study(tmp_path)
     registry.load(name).run(study)
     judged = [check for check in study.checks if check.judged]

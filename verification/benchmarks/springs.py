@@ -1,7 +1,8 @@
 """Random springs, run in this checkout and in another: what became of them, and what that cost.
 
 Each checkout has one process that runs spring after spring, in turns with the other's, so that both see the same load
-of the machine; times are of the processor. A first spring, not counted, loads what is compiled.
+of the machine; times are of the processor. A short run, not counted, loads or compiles what the first spring of each
+material and kind of section needs: the laws that are put together from parts take a minute each to compile.
 """
 
 import json
@@ -17,7 +18,8 @@ from coilset.verification.springs import press_one
 from coilset.verification.springs.random_springs import family, features, random_spring
 
 LIMIT = 60.0  # seconds of the processor that a spring may take
-WARM = {  # a short run that loads what springs need
+COMPILING = 900.0  # seconds of the processor that a short run may take
+WARM = {
     "spring": {"wire_diameter": 2.0, "mean_diameter": 20.0, "turns": 2.5, "pitch": 4.0},
     "contact": {"friction": {"seats": 0.1, "coils": 0.1}},
     "loading": [{"to": "block", "steps": 4}],
@@ -32,12 +34,11 @@ class Side:
     Args:
         start: words that start the command of the checkout.
         environment: of the process.
-        limit: seconds of the processor for a spring.
     """
 
-    def __init__(self, start: Sequence[str], environment: Mapping[str, str], limit: float) -> None:
+    def __init__(self, start: Sequence[str], environment: Mapping[str, str]) -> None:
         self._process = subprocess.Popen(
-            [*start, "python", str(press_one.__file__), f"{limit:g}"],
+            [*start, "python", str(press_one.__file__)],
             env=environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -46,8 +47,8 @@ class Side:
             preexec_fn=end_with_parent,
         )
 
-    def press(self, case: dict[str, Any]) -> dict[str, Any]:
-        """What became of a case, see `press_one.press`.
+    def press(self, case: dict[str, Any], limit: float) -> dict[str, Any]:
+        """What became of a case within `limit` seconds of the processor, see `press_one.press`.
 
         Raises:
             CoilsetError: if the process has ended.
@@ -56,7 +57,7 @@ class Side:
         assert to is not None
         assert answers is not None
         try:
-            to.write(json.dumps(case) + "\n")
+            to.write(json.dumps([case, limit]) + "\n")
             to.flush()
         except (BrokenPipeError, ValueError):  # ValueError: closed
             raise CoilsetError("the process that runs the springs has ended") from None
@@ -92,14 +93,17 @@ def press_springs(
     Raises:
         CoilsetError: if a process of a checkout died.
     """
-    sides = [Side(start, environment, limit) for start in starts]
-    rows = []
+    sides = [Side(start, environment) for start in starts]
+    rows, warm = [], set[str]()
     try:
-        for side in sides:
-            side.press(WARM)
         for number in numbers:
             case = random_spring(number)
-            found = [side.press(case) for side in sides]
+            short = warming(case)
+            if (key := json.dumps(short)) not in warm:
+                warm.add(key)
+                for side in sides:
+                    side.press(short, COMPILING)
+            found = [side.press(case, limit) for side in sides]
             report(number, found)
             friction = "friction" in features(case)
             rows.append(
@@ -109,6 +113,13 @@ def press_springs(
         for side in sides:
             side.end()
     return rows
+
+
+def warming(case: dict[str, Any]) -> dict[str, Any]:
+    """A short run that loads what a case needs; wires of a standard have the same law."""
+    named = isinstance(case["material"], dict)
+    section = {"kind": case["mesh"]["section"]["kind"], "radial": 2, "angular": 8}
+    return {**WARM, "material": "ck15" if named else case["material"], "mesh": {"section": section}}
 
 
 def groups(rows: Sequence[Mapping[str, Any]]) -> dict[str, list[Mapping[str, Any]]]:

@@ -1,9 +1,9 @@
 """Run the load programs of springs, one after the other, for `coilset bench --springs`.
 
-    scripts/coilset python verification/springs/press_one.py 60
+    scripts/coilset python verification/springs/press_one.py
 
-Reads a case as a line of JSON and prints what became of it as one, until there are no more. It runs in this checkout
-and in others: it uses only what they have, too.
+Reads a case and the seconds that it may take as a line of JSON and prints what became of it as one, until there are no
+more. It runs in this checkout and in others: it uses only what they have, too.
 """
 
 import json
@@ -67,4 +67,4 @@ if __name__ == "__main__":
     answers = sys.stdout
     sys.stdout = sys.stderr  # warnings of the program are no answers
     for line in sys.stdin:
-        print(json.dumps(press(json.loads(line), float(sys.argv[1]))), file=answers, flush=True)
+        print(json.dumps(press(*json.loads(line))), file=answers, flush=True)

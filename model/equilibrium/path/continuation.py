@@ -13,7 +13,6 @@ from typing import TypeVar
 
 from petsc4py import PETSc
 
-from coilset.model.base.errors import SolveError
 from coilset.model.equilibrium.newton.newton import Newton, Start
 from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.path.branch_switching import Snap
@@ -290,4 +289,4 @@ class Continuation:
                 "step %d: cut to %.4g of a regular step (%s)", self.number + 1, self.steps.position.size, outcome.reason
             )
         else:
-            raise SolveError(f"no equilibrium beyond {path.place()} on the way to {path.target}: {outcome.reason}")
+            raise path.failure(outcome.reason)

@@ -207,9 +207,20 @@ class LoadProgram:
             stage.label,
             stage.steps == "auto",
             lambda: f"{self.control.height:.6g} mm and {self.control.force:.6g} N",
+            lambda: self._reachable(stage),
             None if marks is None else lambda done: regular * part(done),
             self._moments(stage, part) if stage.hours else None,
         )
+
+    def _reachable(self, stage: Stage) -> str:
+        """The last equilibrium as another target, rounded to four digits towards where the stage began."""
+        by_force, control = stage.kind == "force", self.control
+        begin, value = (self._force, control.force) if by_force else (self._height, control.height)
+        if stage.value is None or value in (0.0, begin):
+            return ""
+        scale = 10.0 ** (3 - math.floor(math.log10(abs(value))))
+        rounded = (math.ceil if value < begin else math.floor)(scale * value) / scale
+        return f"{'a force' if by_force else 'a height'} of {rounded:.6g} {'N' if by_force else 'mm'} can be reached"
 
     def _load(self, stage: Stage, axial: float, part: float) -> Load:
         """The load to a part of a stage, where the height or force is `axial`."""

@@ -26,6 +26,7 @@ class Path:
         automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
             also after a cut.
         place: where on it the body is, in words.
+        reachable: what can be given in place of the target, in words; empty if that is unknown.
         moment: time and temperature at a place on the path; None where no time passes.
         length: of the path up to a place that is counted in regular steps, in their mean length; None: they are equal.
     """
@@ -35,12 +36,19 @@ class Path:
     target: str = "the target"
     automatic: bool = False
     place: Callable[[], str] = lambda: "here"
+    reachable: Callable[[], str] = lambda: ""
     length: Callable[[float], float] | None = None
     moment: Callable[[float], Moment] | None = None
 
     def step_length(self, done: float, size: float) -> float:
         """Length of a step of a size from a place on the path, both in regular steps; in their mean length."""
         return size if self.length is None else self.length(done + size) - self.length(done)
+
+    def failure(self, reason: str) -> SolveError:
+        """The error of a path that ends where the body is."""
+        reachable = self.reachable()
+        after = f"; {reachable}" if reachable else ""
+        return SolveError(f"no equilibrium beyond {self.place()} on the way to {self.target}: {reason}{after}")
 
     def progress(self, done: float) -> float:
         """Part of the path up to a place on it, which is counted in regular steps."""
@@ -97,8 +105,7 @@ class StepSizes:
         """
         self._attempts += 1
         if self._attempts > self.control.attempts * path.regular + self.control.spare_attempts:
-            stalls = f"the program stalls, {self._attempts} solves on the way to {path.target}"
-            raise SolveError(f"no equilibrium beyond {path.place()}: {stalls}")
+            raise path.failure(f"the program stalls, {self._attempts} solves")
         position = self.position
         size = min(position.size, path.regular - position.done)
         if path.automatic:

@@ -26,6 +26,9 @@ from coilset.model.base.kernel import KERNEL
 # T0: of the constants, K.
 TIME, POWER, FORM, STRAIN, STRESS, EXPONENT, TEMPERATURE, ENERGY, T0 = range(9)
 SCALED = -1.0
+MAX_ITERATIONS = 60
+TOLERANCE = 1e-11  # of the creep strain's last correction, over the strain
+MOST = 1e60  # χ c at the start, where the creep strain of the elastic stress is beyond all numbers
 
 
 @njit(**KERNEL)
@@ -61,12 +64,56 @@ def creep_strain(q: np.ndarray, sigma: float, u0: float, h: float) -> Creep:
     if h == 0.0:
         return Creep(0.0, 0.0, 0.0, 0.0, u0, 0.0, 0.0)
     g, slope = rate(q, sigma)
-    power, u = q[POWER], u0 + h * g
-    if not u > 0.0:
+    power, grown = q[POWER], h * g
+    u = u0 + grown
+    if not grown > 0.0:
         return Creep(0.0, 0.0, 0.0, 0.0, u, 0.0, 0.0)
-    c = u**power
     before = u0**power if u0 > 0.0 else 0.0
-    d_c = power * c / u
-    return Creep(
-        c - before, d_c * h * slope, d_c - (power * before / u0 if u0 > 0.0 else 0.0), d_c * h * g, u, h * slope, h * g
-    )
+    # without the rounding of a difference, however little grows
+    c = before * math.expm1(power * math.log1p(grown / u0)) if u0 > 0.0 else grown**power
+    d_c = power * (before + c) / u
+    return Creep(c, d_c * h * slope, d_c - (power * before / u0 if u0 > 0.0 else 0.0), d_c * grown, u, h * slope, grown)
+
+
+@njit(**KERNEL)
+def crept(
+    q: np.ndarray, squares: tuple[float, float], moduli: tuple[float, float], u0: float, h: float
+) -> tuple[float, int]:
+    """χ of χ σ = 1.5 Δc(σ, u₀) of a backward Euler step, and iterations, −1 if there is none.
+
+    In logarithms the difference of both sides increases with log χ, linearly where creep is little and where it is
+    much. Newton's method starts at the creep strain of the elastic stress, above the root, and is kept in a bracket.
+
+    Args:
+        q: array of creep.
+        squares: parts of σ² without the step's creep, of the components with each of two moduli.
+        moduli: c of these, T = c (ē − χ T), N/mm².
+        u0: u at the start.
+        h: the step's time.
+    """
+    (first, other), (first_c, c) = squares, moduli
+    sigma = math.sqrt(first + other)
+    of = creep_strain(q, sigma, u0, h)
+    if not of.strain > 0.0:  # nothing
+        return 0.0, 0 if of.strain == of.strain else -1
+    chi, strain = min(1.5 * of.strain / sigma, MOST / c), 1.5 * sigma / first_c
+    low, high, last = 0.0, math.inf, 0.0
+    for iteration in range(1, MAX_ITERATIONS):
+        a, b = 1.0 / (1.0 + first_c * chi), 1.0 / (1.0 + c * chi)
+        sa, sb = first * a * a, other * b * b
+        sigma = math.sqrt(sa + sb)
+        of = creep_strain(q, sigma, u0, h)
+        if of.strain > 0.0:
+            falls = (first_c * chi * a * sa + c * chi * b * sb) / (sa + sb)  # −d log σ/d log χ
+            step = math.log(1.5 * of.strain / (chi * sigma)) / (1.0 + (of.by_stress * sigma / of.strain - 1.0) * falls)
+            if abs(step) * chi * sigma <= TOLERANCE * (strain + of.strain) + 1e-16:
+                return chi * (1.0 + step), iteration
+        else:  # under so small a stress
+            step = -math.inf
+        low, high = (chi, high) if step > 0.0 else (low, chi)
+        to = chi * math.exp(step)
+        if not low < to < high or (step * last < 0.0 and abs(step) > 0.5 * abs(last)):
+            to = math.sqrt(low * high) if low > 0.0 and high < math.inf else chi * (1e3 if step > 0.0 else 1e-3)
+        last = math.log(to / chi)
+        chi = to
+    return 0.0, -1

@@ -5,7 +5,7 @@ Time is scaled with temperature (Orr, Sherby and Dorn, Trans. ASM 46, 1954): an 
     exp(−Q/R (1/T − 1/T₀))
 
 hours at the temperature T₀ of the constants. Where plastic work heats the points, each scales its own hours with its
-own temperature, which changes between the steps (`rod/heat.py`).
+own temperature, which changes between the steps (`rod/heat.py`); by time hardening t^p, as if it had always had it.
 """
 
 import math
@@ -64,10 +64,11 @@ class CreepLaw:
         """The law over the time between two clocks."""
         data, power = self.data, self.data.time_exponent
         time = float(end[WORTH] - start[WORTH])
+        energy = data.activation_energy / GAS_CONSTANT
         if data.hardening == "time":
-            time, power = float(end[WORTH] ** power - start[WORTH] ** power), 1.0
+            time, energy, power = float(end[WORTH] ** power - start[WORTH] ** power), energy * power, 1.0
+        energy = energy if self.own else SCALED
         form = 0.0 if data.form == "norton_bailey" else 1.0
-        energy = data.activation_energy / GAS_CONSTANT if self.own else SCALED
         viscous = np.array(
             [time, power, form, data.strain, data.stress, data.exponent, end[TEMPERATURE], energy, data.temperature]
         )

@@ -4,8 +4,7 @@ With c = θ σ the equivalent creep strain of a stage, its stress follows from t
 
     σ11 = s̃11/(1 + E θ),   τ1j = τ̃1j/(1 + 3 G θ),
 
-and θ from θ σ(θ) = c(σ(θ)). In logarithms the difference of both sides increases with log θ, linearly where creep is
-little and where it is much; Newton's method starts at c(σ̃)/σ̃, above the root. The compliance of the stage is
+and θ from θ σ(θ) = c(σ(θ)), see `flow.crept`, χ = 1.5 θ. The compliance of the stage is
 
     C⁻¹ + ∂x/∂s = diag(1/E + θ, 1/G + 3θ, 1/G + 3θ) + (∂c/∂σ − θ) d dᵀ,   d = ∂σ/∂s,
 
@@ -20,17 +19,16 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.material.creep.flow import POWER, TIME, passes, rate
+from coilset.model.material.creep.flow import POWER, TIME, creep_strain, crept, passes
 from coilset.model.material.law.functions import SPIN, elasticity, functions
 from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.increment import GAMMA, advance
 from coilset.model.material.point.rod import Vector, active, inner
 
-MAX_ITERATIONS = 60
-TOLERANCE = 1e-11  # of the creep strain's last correction, over the increment of strain
 WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²
-# A stage's end: stress, its direction d, θ, c, u, and ∂c/∂σ − θ at constant time; iterations, -1 if there is none.
-Stage = namedtuple("Stage", "stress d theta c u normal count")
+# A stage's end: stress, its equivalent σ and direction d, θ, the Creep of σ, ∂c/∂σ − θ at constant time; iterations,
+# -1 if there is none.
+Stage = namedtuple("Stage", "stress sigma d theta of normal count")
 # The inverse of C⁻¹ + ∂x/∂s: diag(D) − k v vᵀ.
 Inverse = namedtuple("Inverse", "D k v")
 
@@ -47,11 +45,10 @@ def rod_map(law: Parts, old: np.ndarray, de11: float, dg12: float, dg13: float, 
 @njit(**KERNEL)
 def _without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
     """One increment if no stage yields; else, or if a stage finds no end, -1, and nothing of what is written counts."""
-    q, power = law.viscous, law.viscous[POWER]
+    q = law.viscous
     h, after = passes(q, old[7])
-    before, change, c0 = old[7], after - old[7], old[8]
-    u0 = c0 ** (1.0 / power)
-    c0 = u0**power  # with the rounding of all others
+    before, change = old[7], after - old[7]
+    u0 = old[8] ** (1.0 / q[POWER])
     E0, G0, alpha0 = elasticity(law.plastic, before)
 
     E, G, alpha = elasticity(law.plastic, before + GAMMA * change)
@@ -61,18 +58,14 @@ def _without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: 
         old[1] * G / G0 + G * GAMMA * de[1],
         old[2] * G / G0 + G * GAMMA * de[2],
     )
-    one = _stage(q, trial, E, G, c0, u0, GAMMA * h)
+    one = _stage(q, trial, E, G, u0, GAMMA * h)
     if one.count < 0 or _yields(law.plastic, one.stress, old, before + GAMMA * change):
         return -1
     S = _inverse(one, E, G)
 
-    # creep strain of the first stage's stress over 1 − γ, and how it and u change with that stress
-    sigma = _equivalent(one.stress)
-    g, slope = rate(q, sigma)
-    middle = u0 + (1.0 - GAMMA) * h * g
-    c1 = middle**power
-    theta = (c1 - c0) / sigma if sigma > 0.0 else 0.0
-    normal = power * c1 / middle * (1.0 - GAMMA) * h * slope - theta if middle > 0.0 else 0.0
+    # creep under the first stage's stress over 1 − γ
+    between = creep_strain(q, one.sigma, u0, (1.0 - GAMMA) * h)
+    theta = between.strain / one.sigma if one.sigma > 0.0 else 0.0
 
     E, G, alpha = elasticity(law.plastic, before + change)
     thermal = 0.5 * (alpha0 + alpha) * change
@@ -82,20 +75,16 @@ def _without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: 
         old[1] * G / G0 + G * (de[1] - 3.0 * theta * s[1]),
         old[2] * G / G0 + G * (de[2] - 3.0 * theta * s[2]),
     )
-    two = _stage(q, trial, E, G, c1, middle, GAMMA * h)
+    two = _stage(q, trial, E, G, between.u, GAMMA * h)
     if two.count < 0 or _yields(law.plastic, two.stress, old, before + change):
         return -1
     for i in range(3):
         new[i] = two.stress[i]
     for i in range(3, old.shape[0]):
         new[i] = old[i]
-    new[7], new[8] = before + change, c1 + two.c
-
-    # dX₂/du at fixed σ₂, times ∂u/∂σ₁
-    own = 0.0
-    if middle > 0.0:
-        own = power * ((c1 + two.c) / two.u - c1 / middle) * (1.0 - GAMMA) * h * slope
-    _tangent(_inverse(two, E, G), S, one.d, (normal, theta), _scaled(two.d, own), C)
+    new[7], new[8] = before + change, two.of.u ** q[POWER]
+    own = _scaled(two.d, two.of.by_start * between.u_by_stress)
+    _tangent(_inverse(two, E, G), S, one.d, (between.by_stress - theta, theta), own, C)
     return one.count + two.count
 
 
@@ -116,40 +105,20 @@ def _yields(p: np.ndarray, s: Vector, old: np.ndarray, temperature: float) -> bo
 
 
 @njit(**KERNEL)
-def _stage(q: np.ndarray, trial: Vector, E: float, G: float, c0: float, u0: float, h: float) -> Stage:
-    """The end of a stage of length h that starts with the creep strain c0 = u0^p.
+def _stage(q: np.ndarray, trial: Vector, E: float, G: float, u0: float, h: float) -> Stage:
+    """The end of a stage of length h that starts with u0.
 
     Args:
         trial: stress of the stage's strain without its creep, N/mm².
     """
-    power = q[POWER]
-    axial, shear = trial[0] * trial[0], 3.0 * (trial[1] * trial[1] + trial[2] * trial[2])
-    sigma = math.sqrt(axial + shear)
-    g, slope = rate(q, sigma)
-    u = u0 + h * g
-    c = u**power - c0
-    if not c > 0.0:  # nothing, or less than rounding
-        return Stage(trial, _direction(trial, sigma), 0.0, 0.0, u, 0.0, 1 if c == c else -1)
-    theta, strain = c / sigma, sigma / E
-    for iteration in range(1, MAX_ITERATIONS):
-        a, b = 1.0 / (1.0 + E * theta), 1.0 / (1.0 + 3.0 * G * theta)
-        sa, sb = axial * a * a, shear * b * b
-        sigma = math.sqrt(sa + sb)
-        g, slope = rate(q, sigma)
-        u = u0 + h * g
-        c = u**power - c0
-        if not c > 0.0:
-            return Stage(trial, _direction(trial, sigma), 0.0, 0.0, u, 0.0, -1)
-        dc = power * (c0 + c) / u * h * slope  # ∂c/∂σ
-        falls = (E * theta * a * sa + 3.0 * G * theta * b * sb) / (sa + sb)  # −d log σ/d log θ
-        step = -math.log(theta * sigma / c) / (1.0 + (dc * sigma / c - 1.0) * falls)
-        if abs(step) * theta * sigma <= TOLERANCE * (strain + c) + 1e-16:
-            theta *= 1.0 + step
-            s = (trial[0] / (1.0 + E * theta), trial[1] / (1.0 + 3.0 * G * theta), trial[2] / (1.0 + 3.0 * G * theta))
-            c = theta * _equivalent(s)
-            return Stage(s, _direction(s, _equivalent(s)), theta, c, (c0 + c) ** (1.0 / power), dc - theta, iteration)
-        theta *= math.exp(step)
-    return Stage(trial, _direction(trial, sigma), 0.0, 0.0, u, 0.0, -1)
+    squares = (trial[0] * trial[0], 3.0 * (trial[1] * trial[1] + trial[2] * trial[2]))
+    chi, count = crept(q, squares, (E / 1.5, 2.0 * G), u0, h)
+    theta = chi / 1.5
+    a, b = 1.0 / (1.0 + E * theta), 1.0 / (1.0 + 3.0 * G * theta)
+    s = (trial[0] * a, trial[1] * b, trial[2] * b)
+    sigma = _equivalent(s)
+    of = creep_strain(q, sigma, u0, h)
+    return Stage(s, sigma, _direction(s, sigma), theta, of, of.by_stress - theta if chi > 0.0 else 0.0, count)
 
 
 @njit(**INLINE)

@@ -27,8 +27,6 @@ def check_combinations(data: MaterialFile, refuse: Refuse) -> None:
         refuse("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
     if len({len(at.terms) for at in at_all}) > 1:
         refuse("temperatures", "not all have the same number of back stresses; give as many terms at each")
-    if data.heating and data.creep and data.creep.hardening == "time":
-        refuse("creep.hardening", "points that plastic work heats have no common time; give strain")
     if data.rate:
         _check_rate(data, refuse)
 
@@ -41,7 +39,8 @@ def _check_rate(data: MaterialFile, refuse: Refuse) -> None:
         refuse(
             "rate",
             "cannot be combined with non_normality: overstress sets the rate of all plastic strain, κ ties a part "
-            "of it to the rate of stress; make non_normality 'none', or remove rate",
+            "of it to the rate of stress, so that none or two rates satisfy both while a point beyond the yield "
+            "surface is unloaded; make non_normality 'none', or remove rate",
         )
 
 

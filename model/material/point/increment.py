@@ -49,6 +49,7 @@ from coilset.model.material.point.stage import (
     TRIAL,
     VECTORS,
     WORK,
+    Active,
     Room,
     Span,
     finish,
@@ -151,8 +152,8 @@ def _room(n: int, terms: int) -> Room:
     return Room(
         np.zeros((VECTORS, n)),
         np.zeros((TERMS, terms)),
-        np.empty((4, 4)),
-        np.empty((4, max(n, 2))),
+        np.empty((MOST, MOST)),
+        np.empty((MOST, MOST + 3)),
         np.zeros((3, n, n)),
         np.empty((MOST + n, 2, n)),
         np.empty((MOST + n, terms)),
@@ -389,17 +390,18 @@ def _piece(law: Parts, of: Increment, piece: Piece, rows: np.ndarray, slopes: np
     stage, flowed, count = 0, False, 0
     while True:
         part, at = (1.0 if stage == 2 else GAMMA), (GAMMA if stage == 0 else 1.0)
-        flows, more = _stage(law, of, piece, (part, at), flowed, rows, slopes, room)
+        active, more = _stage(law, of, piece, (part, at), flowed, rows, slopes, room)
         if more < 0:
             return FAILED
         count += more
-        if stage == 0:
-            _lead(law, of, piece, before, slopes_before, rows, slopes, room)
-            stage, flowed = 1, flows
-        elif stage == 1 and flowed and not flows and of.h == 0.0:
-            # the second stage's start lies within the surface: backward Euler for all
+        again = active.neutral or (stage == 1 and flowed and not active.flow)
+        if stage < 2 and again and of.h == 0.0:
+            # neutral, whose κ needs n_β on the surface, or the second stage's start lies within: backward Euler for all
             _copy(before, slopes_before, rows, slopes)
             stage, flowed = 2, False
+        elif stage == 0:
+            _lead(law, of, piece, before, slopes_before, rows, slopes, room)
+            stage, flowed = 1, active.flow
         else:
             return count
 
@@ -414,8 +416,8 @@ def _stage(
     rows: np.ndarray,
     slopes: np.ndarray,
     room: Room,
-) -> tuple[bool, int]:
-    """A stage as long as a part of the piece, and where in it it ends; whether it flows, and iterations."""
+) -> tuple[Active, int]:
+    """A stage as long as a part of the piece, and where in it it ends; which unknowns it has, and iterations."""
     n, length = rows.shape[1], part[0] * piece.length
     temperature = of.temperature + (piece.begin + part[1] * (piece.end - piece.begin)) * of.change
     if of.follows and of.change != 0.0:
@@ -434,7 +436,7 @@ def _stage(
     values, active, count = solve(law, span, rows, slopes, room)
     if count >= 0:
         finish(law, span, rows, slopes, values, active, room)
-    return active.flow, count
+    return active, count
 
 
 @njit(**INLINE)

@@ -19,6 +19,11 @@ so that the residual consists of the parts' scalar equations alone:
 With κ = 0 the second and third give a = D/(v k)² and q = √⅔ D/(v k), D = b − b*, and b alone is left. Temperature
 follows b where plastic work heats the point; k², ζ, κ (`functions`) and γᵢ follow both.
 
+With κ ≠ 0 flow has four kinds (`Active`). Where |n| < k at λ = 0, loading is neutral: a smaller κ is unknown in the
+place of λ (`local`). And n_β, which spin turns off the yield surface and the second stage extrapolates, may lie beyond
+it: the work n:P of a little flow is then slightly negative. b does not decrease, so that D = 0 takes the place of
+(3.1.7).
+
 `differential` has the derivatives of all of it, once: towards unknowns it gives Newton's matrix J, towards strains the
 tangent −J⁻¹ ∂R/∂ε and, with it, what the next stage starts from.
 """
@@ -30,7 +35,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.material.creep.flow import creep_strain
+from coilset.model.material.creep.flow import creep_strain, crept
 from coilset.model.material.law.functions import EXPONENT, functions
 from coilset.model.material.law.parts import Parts, saturation
 from coilset.model.material.point.overstress import ROOT, of_work
@@ -39,22 +44,24 @@ from coilset.model.material.point.overstress import ROOT, of_work
 # the temperature by b; expansion: of the rod's axial strain by b; deviates: κ ≠ 0.
 Span = namedtuple("Span", "h reference temperature work heating expansion deviates")
 # The unknowns, with D in the place of b, and which of them there are: those of flow, and that of creep;
-# neutral: κ is one, in the place of λ = 0.
+# neutral: κ is one, in the place of λ = 0; frozen: D = 0.
 Unknowns = namedtuple("Unknowns", "gain l q chi")
-Active = namedtuple("Active", "flow creep neutral")
-STILL, FLOWING = Active(False, False, False), Active(True, False, False)
+Active = namedtuple("Active", "flow creep neutral frozen")
+STILL, FLOWING = Active(False, False, False, False), Active(True, False, False, False)
+NEUTRAL = Active(True, False, True, False)
 # Room for a stage. v: rows over the components, by the names below; of: rows over the back stresses; J, r: Newton's
 # matrix and residuals; ways: slopes of T_trial, n_β and the logarithm of the stage's time by the strains, shape (3,
 # components, strains); kept, kept_of: D_STRESS and D_FLOW, and D_THETA, of each unknown and, behind MOST of them, of
 # each strain.
 MOST = 4
 Room = namedtuple("Room", "v of J r ways kept kept_of")
-METRIC, MODULUS, TRIAL, ONSET, SHARE, STRESS, ACTIVE, FLOW, D_STRESS, D_ACTIVE, D_FLOW, VECTORS = range(12)
+OFF, CORRECTION, STEP = MOST, MOST + 1, MOST + 2  # columns of r behind J⁻¹: residuals, J⁻¹ times them, the last step
+METRIC, MODULUS, TRIAL, ONSET, TURNED, SHARE, STRESS, ACTIVE, FLOW, D_STRESS, D_ACTIVE, D_FLOW, VECTORS = range(13)
 THETA, ZETA, FADING, D_ZETA, D_FADING, D_THETA, TERMS = range(7)  # FADING: γ
 # Values at the unknowns: v, k and slopes in b; κ; |n|, n:P, |P|, σ and the creep strain; b, a, q, χ as they are used.
 Values = namedtuple("Values", "v dv k dk kappa dkappa norm work length sigma creep gain b l a q chi")
 # What a direction changes: strain number `strain` (none: −1) and the unknowns; and by how much the residuals change.
-Change = namedtuple("Change", "strain b l q chi")
+Change = namedtuple("Change", "strain gain l q chi")
 Residual = namedtuple("Residual", "flow work length creep")
 # Rows of a point's numbers, as of their slopes: ē, the Bᵢ from BACK on, the stage's creep strain χ T in the row before
 # the last, and in the last b and u, in the places WORK and CREPT.
@@ -64,6 +71,8 @@ MAX_ITERATIONS = 60
 PRECISION, LAST = 1e-13, 1e-8  # of |n| over k; of the relative correction after which no other follows
 SMALL = 1e-7  # plastic work or creep strain, over that of elasticity, which needs no relative accuracy
 SHORTEST = 1e-4  # part of a correction
+CLOSE, LEAST = 1e-10, 1e-6  # of |n| over k, and of κ; of n:P over |n| |P|, from where D is sought
+SLIGHT = 1e-8  # of n:P over |n| |P|, and of κ, that is none
 
 
 @njit(**INLINE)
@@ -114,9 +123,11 @@ def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Ac
         n, H = s * elastic, s * c + total
         for i in range(size):
             n -= room.of[THETA, i] * start[BACK + i, j]
+        turned = (n - (1.0 + H * (a - kappa)) * room.v[ONSET, j]) / (1.0 + H * a)  # n − n_β, without its rounding
         n = (n + H * kappa * room.v[ONSET, j]) / (1.0 + H * a)
-        P = a * n - kappa * room.v[ONSET, j]
-        room.v[ACTIVE, j], room.v[FLOW, j], room.v[STRESS, j] = n, P, s * (elastic - c * P)
+        P = (a - kappa) * n + kappa * turned
+        room.v[TURNED, j], room.v[ACTIVE, j], room.v[FLOW, j] = turned, n, P
+        room.v[STRESS, j] = s * (elastic - c * P)
     norm, length = math.sqrt(inner(room.v, ACTIVE, ACTIVE)), math.sqrt(inner(room.v, FLOW, FLOW))
     sigma = math.sqrt(1.5 * inner(room.v, STRESS, STRESS))
     creep = creep_strain(law.viscous, sigma, start[-1, CREPT], span.h)
@@ -147,9 +158,9 @@ def differential(
     way, db0, du0, d_time = change.strain, 0.0, 0.0, 0.0
     if way >= 0:
         db0, du0, d_time = slopes[-1, WORK, way], slopes[-1, CREPT, way], room.ways[2, 0, way]
-    gain, d_gain = x.gain, change.b - db0
-    dk, dq, dv = x.dk * change.b, change.q, 0.0
-    dkappa = change.l if active.neutral else x.dkappa * change.b
+    gain, d_gain, db = x.gain, change.gain, db0 + change.gain
+    dk, dq, dv = x.dk * db, change.q, 0.0
+    dkappa = change.l if active.neutral else x.dkappa * db
     da = change.l if active.neutral else change.l + dkappa
     if active.flow and not span.deviates:
         dw = d_gain / gain
@@ -162,8 +173,8 @@ def differential(
     d_total = 0.0
     for i in range(size):
         theta = room.of[THETA, i]
-        room.of[D_THETA, i] = -theta * theta * (room.of[FADING, i] * dq + x.q * room.of[D_FADING, i] * change.b)
-        d_total += room.of[D_THETA, i] * room.of[ZETA, i] + theta * room.of[D_ZETA, i] * change.b
+        room.of[D_THETA, i] = -theta * theta * (room.of[FADING, i] * dq + x.q * room.of[D_FADING, i] * db)
+        d_total += room.of[D_THETA, i] * room.of[ZETA, i] + theta * room.of[D_ZETA, i] * db
     total = 0.0
     for i in range(size):
         total += room.of[THETA, i] * room.of[ZETA, i]
@@ -182,8 +193,8 @@ def differential(
             dn -= room.of[D_THETA, i] * start[BACK + i, j]
             if way >= 0:
                 dn -= room.of[THETA, i] * slopes[BACK + i, j, way]
-        n, P, onset = room.v[ACTIVE, j], room.v[FLOW, j], room.v[ONSET, j]
-        rest = n * da - onset * dkappa - x.kappa * d_onset
+        n, P, turned = room.v[ACTIVE, j], room.v[FLOW, j], room.v[TURNED, j]
+        rest = n * (da - dkappa) + turned * dkappa - x.kappa * d_onset
         dn = (dn - P * dH - H * rest) / (1.0 + H * x.a)
         dP = rest + x.a * dn
         dT = s * (d_elastic - c * dP) + ds * (elastic - c * P)
@@ -212,36 +223,14 @@ def residual(x: Values) -> Residual:
     return Residual(x.norm - x.v * x.k, x.gain - x.work, x.q - ROOT * x.length, creep)
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def creep_alone(law: Parts, span: Span, start: np.ndarray, room: Room) -> tuple[float, int]:
-    """χ of a stage that does not flow, and iterations, −1 if there is none.
-
-    In logarithms the difference of both sides of the creep equation increases with log χ, linearly where creep is
-    little and where it is much. Newton's method starts at the creep strain of the elastic stress, above the root.
-    """
+    """χ of a stage that does not flow, and iterations, −1 if there is none."""
     v = room.v
-    first_c, c = v[MODULUS, 0], v[MODULUS, 1]
     first, other = 1.5 * v[METRIC, 0] * v[TRIAL, 0] * v[TRIAL, 0], 0.0
     for j in range(1, v.shape[1]):
         other += 1.5 * v[METRIC, j] * v[TRIAL, j] * v[TRIAL, j]
-    u0, sigma = start[-1, CREPT], math.sqrt(first + other)
-    of = creep_strain(law.viscous, sigma, u0, span.h)
-    if not of.strain > 0.0:  # nothing, or less than rounding
-        return 0.0, 0 if of.strain == of.strain else -1
-    chi, strain = 1.5 * of.strain / sigma, 1.5 * sigma / first_c
-    for iteration in range(1, MAX_ITERATIONS):
-        a, b = 1.0 / (1.0 + first_c * chi), 1.0 / (1.0 + c * chi)
-        sa, sb = first * a * a, other * b * b
-        sigma = math.sqrt(sa + sb)
-        of = creep_strain(law.viscous, sigma, u0, span.h)
-        if not of.strain > 0.0:
-            return 0.0, -1
-        falls = (first_c * chi * a * sa + c * chi * b * sb) / (sa + sb)  # −d log σ/d log χ
-        step = math.log(1.5 * of.strain / (chi * sigma)) / (1.0 + (of.by_stress * sigma / of.strain - 1.0) * falls)
-        if abs(step) * chi * sigma <= 1e-11 * (strain + of.strain) + 1e-16:
-            return chi * (1.0 + step), iteration
-        chi *= math.exp(step)
-    return 0.0, -1
+    return crept(law.viscous, (first, other), (v[MODULUS, 0], v[MODULUS, 1]), start[-1, CREPT], span.h)
 
 
 @njit(**INLINE)
@@ -291,20 +280,20 @@ def flow_alone(
 
 @njit(**INLINE)
 def _unknowns(active: Active, deviates: bool) -> int:
-    """Their number: b, then a and q if flow deviates from normality, then log χ."""
-    return (0 if not active.flow else 3 if deviates else 1) + (1 if active.creep else 0)
+    """Their number: D, unless frozen, then λ or κ and q if flow deviates from normality, then log χ."""
+    flow = (0 if active.frozen else 1) + (2 if deviates else 0)
+    return (flow if active.flow else 0) + (1 if active.creep else 0)
 
 
 @njit(**INLINE)
 def _direction(x: Values, active: Active, deviates: bool, number: int) -> Change:
     """Of an unknown, in its own size."""
-    if active.flow and number == 0:
+    if active.creep and number == _unknowns(active, deviates) - 1:
+        return Change(-1, 0.0, 0.0, 0.0, x.chi)
+    number += 1 if active.frozen else 0
+    if number == 0:
         return Change(-1, x.gain, 0.0, 0.0, 0.0)
-    if active.flow and deviates and number == 1:
-        return Change(-1, 0.0, x.l, 0.0, 0.0)
-    if active.flow and deviates and number == 2:
-        return Change(-1, 0.0, 0.0, x.q, 0.0)
-    return Change(-1, 0.0, 0.0, 0.0, x.chi)
+    return Change(-1, 0.0, x.l, 0.0, 0.0) if number == 1 else Change(-1, 0.0, 0.0, x.q, 0.0)
 
 
 @njit(**INLINE)
@@ -313,10 +302,49 @@ def _write(x: Values, of: Residual, active: Active, deviates: bool, into: np.nda
     i = 0
     if active.flow:
         into[0, column], i = of.flow / x.k, 1
+        if not active.frozen and deviates:
+            into[1, column], i = of.work / x.gain, 2
         if deviates:
-            into[1, column], into[2, column], i = of.work / x.gain, of.length / x.q, 3
+            into[i, column] = of.length / x.q
+            i += 1
     if active.creep:
         into[i, column] = of.creep
+
+
+@njit(**INLINE)
+def _grown(step: float) -> float:
+    """Factor of a positive unknown."""
+    return 1.0 + step if step > 0.0 else 1.0 / (1.0 - step)
+
+
+@njit(**INLINE)
+def _moved(x: Values, r: np.ndarray, part: float, active: Active, deviates: bool) -> Unknowns:
+    """The unknowns after part of Newton's correction r; all stay positive."""
+    gain, l, q, chi, i = x.gain, x.l, x.q, x.chi, 0
+    if active.flow and not active.frozen:
+        gain, i = gain * _grown(-part * r[0, STEP]), 1
+    if active.flow and deviates:
+        l, q = l * _grown(-part * r[i, STEP]), q * _grown(-part * r[i + 1, STEP])
+        i += 2
+    if active.creep:
+        chi *= _grown(-part * r[i, STEP])
+    return Unknowns(gain, l, q, chi)
+
+
+@njit(**INLINE)
+def _error(x: Values, r: np.ndarray, active: Active, deviates: bool, modulus: float) -> float:
+    """Largest relative correction, of what is small beside the elastic strain times its share of that."""
+    length = x.length + SMALL * x.k / modulus
+    flow = x.length / length
+    creep = x.creep.strain / (x.creep.strain + SMALL * x.sigma / modulus)
+    largest, i = 0.0, 0
+    if active.flow and not active.frozen:
+        largest, i = abs(r[0, CORRECTION]) * x.gain / (x.v * x.k * length), 1  # n:P may be less than |n| |P|
+    if active.flow and deviates:
+        share = flow if active.neutral else x.l * x.v * x.k / length  # of λ n in P
+        largest = max(largest, share * abs(r[i, CORRECTION]), flow * abs(r[i + 1, CORRECTION]))
+        i += 2
+    return max(largest, creep * abs(r[i, CORRECTION])) if active.creep else largest
 
 
 @njit(**INLINE)
@@ -371,9 +399,24 @@ def _eliminate(J: np.ndarray, r: np.ndarray, n: int, columns: int) -> None:
 
 
 @njit(**INLINE)
-def _grown(step: float) -> float:
-    """Factor of a positive unknown."""
-    return 1.0 + step if step > 0.0 else 1.0 / (1.0 - step)
+def _invert(room: Room, n: int) -> None:
+    """Write J⁻¹ to the first columns of `Room.r`."""
+    for i in range(n):
+        for j in range(n):
+            room.r[i, j] = 1.0 if i == j else 0.0
+    _eliminate(room.J, room.r, n, n)
+
+
+@njit(**INLINE)
+def _correct(room: Room, n: int) -> float:
+    """Write J⁻¹ times the residuals; its square."""
+    size = 0.0
+    for i in range(n):
+        room.r[i, CORRECTION] = 0.0
+        for j in range(n):
+            room.r[i, CORRECTION] += room.r[i, j] * room.r[j, OFF]
+        size += room.r[i, CORRECTION] * room.r[i, CORRECTION]
+    return size
 
 
 @njit(**KERNEL)
@@ -382,55 +425,102 @@ def _together(
     span: Span,
     start: np.ndarray,
     slopes: np.ndarray,
-    l: float,
-    x: Values,
+    at: Unknowns,
     active: Active,
     room: Room,
 ) -> tuple[Values, int]:
-    """Newton's method for all unknowns of a stage that flows, from the values x and λ = l (κ, if
-    neutral); iterations, −1 if it fails.
+    """Newton's method for all unknowns of a stage that flows; iterations, −1 if it fails.
 
-    A correction that does not make the residual smaller is halved.
+    A correction is halved until one by the same matrix after it is smaller, which no scaling of the equations changes
+    (P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, 3.3).
     """
-    r = room.r
     n = _unknowns(active, span.deviates)
-    at = Unknowns(x.gain, l, x.q, x.chi)
     x = evaluate(law, span, start, at, active, room)
+    _write(x, residual(x), active, span.deviates, room.r, OFF)
     for iteration in range(1, MAX_ITERATIONS):
-        _write(x, residual(x), active, span.deviates, r, 0)
         _matrix(law, span, start, slopes, x, active, room)
-        off = 0.0
-        for i in range(n):
-            off += r[i, 0] * r[i, 0]
-        _eliminate(room.J, r, n, 1)
-        flow = x.gain / (x.gain + SMALL * x.k * x.k / room.v[MODULUS, 0])
-        creep = x.creep.strain / (x.creep.strain + SMALL * x.sigma / room.v[MODULUS, 0])
-        largest = 0.0
-        for i in range(n):
-            largest = max(largest, abs(r[i, 0]) * (creep if active.creep and i == n - 1 else flow))
+        _invert(room, n)
+        size = _correct(room, n)
+        largest = _error(x, room.r, active, span.deviates, room.v[MODULUS, 0])
         if not math.isfinite(largest):
             return x, -1
         part = 1.0
+        for i in range(n):
+            room.r[i, STEP] = room.r[i, CORRECTION]
         while True:
-            gain, l, q, chi = x.gain * _grown(-part * r[0, 0]), x.l, x.q, x.chi
-            if span.deviates:
-                l, q = l * _grown(-part * r[1, 0]), q * _grown(-part * r[2, 0])
-            if active.creep:
-                chi *= _grown(-part * r[n - 1, 0])
-            new = evaluate(law, span, start, Unknowns(gain, l, q, chi), active, room)
+            new = evaluate(law, span, start, _moved(x, room.r, part, active, span.deviates), active, room)
             if largest <= LAST:
                 return new, iteration
-            _write(new, residual(new), active, span.deviates, r, 1)
-            after = 0.0
-            for i in range(n):
-                after += r[i, 1] * r[i, 1]
-            if after < off:
+            _write(new, residual(new), active, span.deviates, room.r, OFF)
+            if _correct(room, n) < size:
                 break
             part *= 0.5
             if part < SHORTEST:
                 return x, -1
         x = new
     return x, -1
+
+
+@njit(**KERNEL)
+def _neutral_alone(law: Parts, span: Span, start: np.ndarray, chi: float, room: Room) -> Unknowns:
+    """κ of neutral loading, with its D ≥ 0 and q, at a given χ, near enough for Newton's method.
+
+    |n| > k at κ = 0, which is elastic, and |n| < k at the material's κ: false position with halved weights (Illinois).
+    """
+    low, high = 0.0, functions(law.plastic, start[-1, WORK], span.temperature)[4]
+    above, below, kappa = math.nan, math.nan, 0.5 * high
+    at = Unknowns(0.0, kappa, 0.0, chi)
+    for _ in range(MAX_ITERATIONS):
+        x = evaluate(law, span, start, Unknowns(at.gain, kappa, at.q, chi), NEUTRAL, room)
+        at = Unknowns(max(x.work, 0.0), kappa, ROOT * x.length, chi)
+        x = evaluate(law, span, start, at, NEUTRAL, room)
+        off = x.norm - x.k
+        if abs(off) <= CLOSE * x.k or high - low <= CLOSE * high:
+            return at
+        if off > 0.0:
+            low, above, below = kappa, off, 0.5 * below
+        else:
+            high, below, above = kappa, off, 0.5 * above
+        kappa = (low * below - high * above) / (below - above)
+        if not low < kappa < high:  # not both ends are known yet
+            kappa = 0.5 * (low + high)
+    return at
+
+
+@njit(**KERNEL)
+def _deviating(
+    law: Parts,
+    span: Span,
+    start: np.ndarray,
+    slopes: np.ndarray,
+    at: Unknowns,
+    active: Active,
+    room: Room,
+) -> tuple[Values, Active, int]:
+    """The end of a stage that flows with κ ≠ 0, from the unknowns of one that flows without.
+
+    The kind of flow is that of λ = 0, or else, at the border of two kinds, another one.
+    """
+    x = evaluate(law, span, start, Unknowns(0.0, 0.0, 0.0, at.chi), FLOWING, room)
+    x = evaluate(law, span, start, Unknowns(max(x.work, 0.0), 0.0, ROOT * x.length, at.chi), FLOWING, room)
+    neutral, total = x.norm < x.k, 0
+    for _ in range(2):
+        first, frozen = at, False
+        if neutral:
+            first = _neutral_alone(law, span, start, at.chi, room)
+            frozen = first.gain == 0.0
+        for _ in range(2):
+            active = Active(True, active.creep, neutral, frozen)
+            gain = 0.0 if frozen else max(first.gain, LEAST * x.k * first.q)
+            x, count = _together(law, span, start, slopes, Unknowns(gain, first.l, first.q, at.chi), active, room)
+            total += max(count, 0)
+            kappa = functions(law.plastic, x.b, span.temperature)[4]
+            falls = not frozen or x.work <= SLIGHT * x.k * x.length
+            if count >= 0 and falls and (not neutral or x.l <= kappa * (1.0 + SLIGHT)):
+                return x, active, total
+            frozen = not frozen
+        neutral = not neutral
+    return x, active, -1
 
 
 @njit(**INLINE)
@@ -441,21 +531,21 @@ def solve(law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: R
         chi, count = creep_alone(law, span, start, room)
     x = evaluate(law, span, start, Unknowns(0.0, 0.0, 0.0, chi), STILL, room)
     if count < 0 or x.norm <= x.k * (1.0 + 1e-12):
-        return x, Active(False, chi > 0.0, False), count
-    active = Active(True, chi > 0.0, False)
+        return x, Active(False, chi > 0.0, False, False), count
+    active = Active(True, chi > 0.0, False, False)
     gain, more = flow_alone(law, span, start, slopes, chi, room)
     if more < 0:
         return x, active, -1
     x = evaluate(law, _normal(span, span.reference), start, Unknowns(gain, 0.0, 0.0, chi), FLOWING, room)
     if active.creep or span.deviates:
-        end, last = _together(law, span, start, slopes, x.l, x, active, room)
-        if last < 0 and span.deviates:
-            kappa = functions(law.plastic, start[-1, WORK], span.temperature)[4]
-            active = Active(True, active.creep, True)
-            end, last = _together(law, span, start, slopes, 0.5 * kappa, x, active, room)
+        at = Unknowns(x.gain, x.l, x.q, x.chi)
+        if span.deviates:
+            x, active, last = _deviating(law, span, start, slopes, at, active, room)
+        else:
+            x, last = _together(law, span, start, slopes, at, active, room)
         if last < 0:
             return x, active, -1
-        x, more = end, more + last
+        more += last
     return x, active, count + more
 
 
@@ -486,7 +576,7 @@ def finish(
                 room.kept[MOST + k, 1, j] += change * room.kept[i, 1, j]
             for j in range(size):
                 room.kept_of[MOST + k, j] += change * room.kept_of[i, j]
-        d_work = -x.gain * room.r[0, k] if active.flow else slopes[-1, WORK, k]
+        d_work = slopes[-1, WORK, k] - (x.gain * room.r[0, k] if active.flow and not active.frozen else 0.0)
         d_chi = -x.chi * room.r[count - 1, k] if active.creep else 0.0
         d_sigma = 0.0
         for j in range(n):

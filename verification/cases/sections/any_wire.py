@@ -88,10 +88,12 @@ def closed_forms(study: Study) -> None:
     for name, (outline, J) in exact.items():
         found = Outlined.of(outline, 2.5).warping().torsion * 2.5**4
         study.check(f"{name}: torsion constant, mm⁴", found, J, "closed form", 1e-3)
-        mean = 60.0
+        mean = 300.0
         R, G = 0.5 * mean, library.load("elastic").G
         rate = elastic_rate(outline, mean, 1e-3)
-        study.check(f"{name}, D = 60 mm, rate of a turn, N/mm", rate, G * J / (2.0 * np.pi * R**3), "G J/(2π R³)", 3e-2)
+        study.check(
+            f"{name}, D = 300 mm, rate of a turn, N/mm", rate, G * J / (2.0 * np.pi * R**3), "G J/(2π R³)", 1e-3
+        )
 
 
 def unit(outline: Outline) -> tuple[Outlined, float]:
@@ -110,20 +112,21 @@ def elastic_rate(outline: Outline, mean: float, pitch: float) -> float:
 
 
 def tube(study: Study) -> None:
-    """A tube 5 × 3 in a coil of D = 30 mm against disks of 5 and 3 mm, which warp a little otherwise."""
-    law, mean = library.load("elastic"), 30.0
-    rates = []
-    for d in (5.0, 3.0):
-        one = OutlinedCoil(law, "curved", polar(), d, mean, 1e-3)
-        one.go_to(1e-7)
-        rates.append(one.force / one.travel)
-    study.check(
-        "tube 5 × 3, D = 30 mm, rate of a turn, N/mm",
-        elastic_rate(Tube(5.0, 3.0), mean, 1e-3),
-        rates[0] - rates[1],
-        "disk of 5 mm less disk of 3 mm",
-        2e-3,
-    )
+    """A tube 5 × 3 against disks of 5 and 3 mm, in a wide coil and in one whose wire is curved and sheared."""
+    law = library.load("elastic")
+    for mean in (120.0, 30.0):
+        rates = []
+        for d in (5.0, 3.0):
+            one = OutlinedCoil(law, "curved", polar(), d, mean, 1e-3)
+            one.go_to(1e-7)
+            rates.append(one.force / one.travel)
+        found, name = elastic_rate(Tube(5.0, 3.0), mean, 1e-3), f"tube 5 × 3, D = {mean:g} mm, rate of a turn, N/mm"
+        source = "disk of 5 mm less disk of 3 mm"
+        if mean > 100.0:
+            study.check(name, found, rates[0] - rates[1], source, 1e-3)
+        else:
+            reason = "the disk inside carries shear across the tube's free surface"
+            study.shown(name, found, rates[0] - rates[1], source, reason)
 
 
 def size(outline: Outline, index: float) -> tuple[float, float, float]:
