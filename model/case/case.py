@@ -16,6 +16,7 @@ from coilset.model.base.yaml import read_data
 from coilset.model.case.endurance import EnduranceSpec
 from coilset.model.case.heads import FREEDOMS, ForceLineSpec, HeadsSpec
 from coilset.model.case.heat import HeatSpec
+from coilset.model.case.limits import AnyLimit
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
@@ -279,6 +280,13 @@ class Case(Strict):
     working: Annotated[
         WorkingSpec | None,
         Field(description="lengths or forces between which the finished spring works; left out: none are reported"),
+    ] = None
+    limits: Annotated[
+        dict[Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")], AnyLimit] | None,
+        Field(
+            description="between which values results must be: name, such as free_length or force_at_37, → "
+            "[low, high], {nominal, tolerance}, or EN 15800 grade 2"
+        ),
     ] = None
     endurance: Annotated[
         EnduranceSpec | None,

@@ -26,6 +26,7 @@ from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
 from coilset.model.manufacture.initial_state import past_warnings
 from coilset.model.material.law.law import Law
+from coilset.model.results.limits import case_limits
 from coilset.model.results.records.record import ContactRecord, ForceLine, Limits, Setup
 from coilset.model.rod.elements import ELEMENTS
 from coilset.model.rod.heat import WireHeat, heat_constants
@@ -206,6 +207,7 @@ def build_setup(
         warnings=warnings,
         coiling_diameter=coiling_diameter,
         force_line=build_force_line(case),
+        bounds=case_limits(case, spring, elastic.shear_modulus),
         wound_solid="initial_tension" in case.past,
         strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
     )

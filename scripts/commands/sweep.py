@@ -188,17 +188,25 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     if parquet.write(out / "sweep.parquet", plan, records) is None:
         console.warn("sweep.parquet is not written: the package pyarrow is not installed")
     del records
-    from coilset.model.sweep import dataset, multifidelity  # after the cases: xarray and matplotlib take half a second
+    from coilset.model.figures.png import write_png  # after the cases: xarray and matplotlib take half a second
+    from coilset.model.sweep import dataset, multifidelity
+    from coilset.model.sweep.figures import capability
     from coilset.model.sweep.figures.figures import FILES, draw
+    from coilset.model.sweep.figures.limits import histogram
 
     data = dataset.collect(plan, out)
-    clear(out, FILES)
+    clear(out, ("limits.png", *FILES))
     dataset.write(out / "sweep.nc", data)
     if data.sizes["case"] < len(plan):
         console.say(f"sweep.nc and figures show {data.sizes['case']} of {len(plan)} cases; sweep.parquet has all")
     files, problems = draw(out, plan, data) if options.pictures else ([], [])
     for line in multifidelity.lines(plan, data, out / "sweep.parquet"):
         console.print(line)
+    capable = capability.capabilities(plan, data)
+    for line in capability.lines(capable):
+        console.print(line)
+    if capable and options.pictures:
+        write_png(out / "limits.png", [histogram(one) for one in capable])
     table = Table(show_header=True, box=None, padding=(0, 2))
     for column in ("", "minimum", "mean", "maximum"):
         table.add_column(column, justify="left" if not column else "right")

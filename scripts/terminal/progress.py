@@ -15,6 +15,7 @@ from rich.table import Table
 
 from coilset.model.results.records.labels import largest_errors, within
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
+from coilset.model.results.records.units import quantity as name_and_unit
 from coilset.model.run.analysis import Analysis
 from coilset.scripts.terminal.console import Console
 
@@ -106,6 +107,8 @@ class Lines:
         self.console.print(table)
         if summary["working"]:
             self.console.print(working_table(summary["working"]))
+        for limit in summary["limits"]:
+            self.console.print(limit_line(limit), soft_wrap=True)
         if summary["fatigue"]:
             self.console.print(fatigue_table(summary["fatigue"]))
         self.console.say(f"  results in {out}{os.sep}", whole=True)
@@ -229,6 +232,16 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
             "-" if state["safety"] is None else f"{state['safety']:.2f}",
         )
     return table
+
+
+def limit_line(limit: Mapping[str, Any]) -> str:
+    """Whether a limit is met, and by how much."""
+    words, unit = name_and_unit(limit["name"])
+    bounds = f"{limit['low']:.5g} to {limit['high']:.5g} {unit}"
+    if limit["value"] is None:
+        return f"  {words}: no such result; limits {bounds}"
+    side = "met, within by" if limit["met"] else "[bold red]not met[/], outside by"
+    return f"  {words} {limit['value']:.5g} {unit}: limits {bounds} {side} {abs(limit['margin']):.3g} {unit}"
 
 
 def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:

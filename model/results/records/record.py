@@ -19,6 +19,7 @@ from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
 
 if TYPE_CHECKING:  # its records hold those of here
+    from coilset.model.results.limits import Limit
     from coilset.model.results.records.working import Working
 
 
@@ -290,6 +291,7 @@ class Setup:
         force_line: ForceLine, or None.
         wound_solid: whether coils press on each other before any load.
         strength: Strength of the wire in fatigue, or None.
+        bounds: Limits of results.
     """
 
     spring: Spring
@@ -311,6 +313,7 @@ class Setup:
     force_line: ForceLine | None = None
     wound_solid: bool = False
     strength: Strength | None = None
+    bounds: "tuple[Limit, ...]" = ()
 
     @property
     def slender(self) -> bool:

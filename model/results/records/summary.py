@@ -10,6 +10,7 @@ import numpy as np
 
 from coilset.model.base.errors import InputError
 from coilset.model.results.fatigue import fatigue
+from coilset.model.results.limits import judged, limit_warnings
 from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates, tension, turning
 from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
@@ -26,7 +27,10 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
     """The Summary of a run as plain data, as in summary.json, with the numbers of working states; see `summary`."""
     made = summary(setup, result)
     plain = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(made).items()}
-    return plain | working_numbers(made.working)
+    numbers = working_numbers(made.working)
+    entries = judged(setup.bounds, plain | numbers) if result.complete else ()
+    outside = [asdict(warning) for warning in limit_warnings(entries)]
+    return plain | {"limits": list(entries), "warnings": [*plain["warnings"], *outside]} | numbers
 
 
 def summary(setup: Setup, result: Result) -> Summary:
@@ -72,6 +76,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         working=working_entries(setup, result),
         working_set_mm=result.working.set if result.working else None,
         fatigue=fatigue(setup, result),
+        limits=(),
         load_loss_percent=load_loss(result),
         coiling_diameter_mm=setup.coiling_diameter,
         measured_axis_offset_mm=axis.offset if axis else None,

@@ -176,6 +176,12 @@ class Summary:
         "that 10, 50 and 90 % do not survive, `null` where it endures",
         of_slice=False,
     )
+    limits: tuple[dict[str, Any], ...] = entry(
+        "",
+        "for each of the case's `limits`: `name` of the result, its `value`, `low`, `high`, their `source`, whether "
+        "they are `met`, and the `margin` to the nearer one, negative outside",
+        of_slice=False,
+    )
     load_loss_percent: float | None = entry(
         "%",
         "part of its force that the spring had lost when time last passed at constant height; `null` if none did",

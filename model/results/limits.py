@@ -1,0 +1,138 @@
+"""Limits of results: between which values they must be, and whether a run meets them."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any
+
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
+from coilset.model.base.warning import Warning
+from coilset.model.case import Case
+from coilset.model.case.limits import GRADE, About, AnyLimit
+from coilset.model.results.records.summary_entries import NUMBERS
+from coilset.model.results.records.units import quantity, without_unit
+from coilset.model.results.records.working import asked, is_working_number, names_of
+from coilset.model.standards import en13906, en15800
+from coilset.model.standards.cylinder import Cylinder
+
+OTHERS = {"free_length": "free_length_after_mm", "rate": "rate_30_70_after_N_per_mm"}
+"""Results by their names on a drawing, where it means the finished spring."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Limits of one result.
+
+    Attributes:
+        name: of the result in the summary.
+        low, high: between which it must be.
+        source: where they are from, in words.
+    """
+
+    name: str
+    low: float
+    high: float
+    source: str
+
+    @property
+    def words(self) -> str:
+        """The result, with its unit."""
+        words, unit = quantity(self.name)
+        return f"{words}, {unit}"
+
+    def margin(self, value: float) -> float:
+        """Distance from the nearer limit; negative outside."""
+        return min(value - self.low, self.high - value)
+
+
+def case_limits(case: Case, spring: Spring, shear_modulus: float) -> tuple[Limit, ...]:
+    """The limits of a case, for its spring.
+
+    Raises:
+        InputError: a name that is no result of this case, or a tolerance that the standard does not have.
+    """
+    numbers = [*NUMBERS, *(names_of(case.working.model_dump()) if case.working else ())]
+    found = []
+    for name, limit in (case.limits or {}).items():
+        place = f"limits.{name}"
+        full = _full(name, numbers, place)
+        low, high, source = _range(full, limit, spring, shear_modulus, place)
+        found.append(Limit(full, low, high, source))
+    return tuple(found)
+
+
+def _full(name: str, numbers: list[str], place: str) -> str:
+    """The name in the summary of a result that may lack its unit."""
+    stems = {without_unit(one)[0]: one for one in numbers} | OTHERS
+    full = name if name in numbers else stems.get(name)
+    if full is None:
+        near = get_close_matches(name, [*stems, *numbers], 1)
+        hint = f"is {near[0]} meant?" if near else "lengths are named in working, as in working: {lengths: [37]}"
+        raise InputError(f"is no number of this case's results; {hint}", place)
+    return full
+
+
+def _range(name: str, limit: AnyLimit, spring: Spring, shear_modulus: float, place: str) -> tuple[float, float, str]:
+    if isinstance(limit, list):
+        return limit[0], limit[1], "given"
+    if isinstance(limit, About) and not isinstance(limit.tolerance, str):
+        return limit.nominal - limit.tolerance, limit.nominal + limit.tolerance, "given"
+    text = limit if isinstance(limit, str) else str(limit.tolerance)
+    grade = en15800_grade(text)
+    cylinder = Cylinder.of(spring)
+    d, D, n, length = cylinder.d, cylinder.D, cylinder.n, cylinder.length
+    is_force = is_working_number(name) and name.startswith("force_at_")
+    if not is_force and name != "free_length_after_mm":
+        raise InputError("EN 15800 has tolerances of free_length and of force_at_…; give two numbers", place)
+    reason = en15800.outside(d, D, n, length)
+    if reason:
+        raise InputError(f"EN 15800 does not cover this spring: {reason}; give two numbers", place)
+    if isinstance(limit, About):
+        nominal, source = limit.nominal, text
+    elif is_force:
+        nominal, source = en13906.rate(shear_modulus, d, D, n) * (length - asked(name)[1]), f"{text}, about R (L0 − L)"
+    else:
+        nominal, source = length, f"{text}, about the drawn length"
+    spread = (
+        en15800.force_tolerance(grade, d, D, n, nominal)
+        if is_force
+        else en15800.tolerances(grade, shear_modulus, d, D, n, length).free_length
+    )
+    return nominal - spread, nominal + spread, source
+
+
+def en15800_grade(text: str) -> en15800.Grade:
+    """The grade in `EN 15800 grade 2`."""
+    found = GRADE.fullmatch(text)
+    assert found is not None
+    return {"1": 1, "2": 2, "3": 3}[found[1]]  # type: ignore[return-value]
+
+
+def judged(limits: tuple[Limit, ...], summary: Mapping[str, Any]) -> tuple[dict[str, Any], ...]:
+    """Entries of summary.json, one for each limit: the value, whether it is met, and by how much."""
+    found = []
+    for limit in limits:
+        value = summary.get(limit.name)
+        entry = {"name": limit.name, "value": value, "low": limit.low, "high": limit.high, "source": limit.source}
+        margin = None if value is None else limit.margin(value)
+        found.append(entry | {"met": margin is not None and margin >= 0.0, "margin": margin})
+    return tuple(found)
+
+
+def limit_warnings(entries: tuple[dict[str, Any], ...]) -> Iterator[Warning]:
+    """Limits that are not met."""
+    for entry in entries:
+        if entry["met"]:
+            continue
+        words, unit = quantity(entry["name"])
+        bounds = f"{entry['low']:.6g} to {entry['high']:.6g} {unit} ({entry['source']})"
+        if entry["value"] is None:
+            message = f"the {words} must be {bounds}, but this run has none"
+        else:
+            beyond = entry["low"] if entry["value"] < entry["low"] else entry["high"]
+            off = f"outside by {-entry['margin']:.4g} {unit}"
+            message = f"the {words} is {entry['value']:.6g} {unit}, {off}; it must be {bounds}"
+            yield Warning("limit", entry["name"], message, entry["value"], beyond, unit)
+            continue
+        yield Warning("limit", entry["name"], message)
