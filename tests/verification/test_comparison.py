@@ -40,7 +40,7 @@ def test_a_folder(tmp_path):
     drawn = figure(replace(found, rows=[force, lost]), "spring")
     assert drawn.axes[0].get_title() == "spring: 1 of 2 numbers met"
     pressed, released = drawn.axes[1].lines[:2]
-    assert np.interp(10.0, *pressed.get_data()) == pytest.approx(force.computed, rel=1e-3)
+    assert np.interp(12.0, *pressed.get_data()) == pytest.approx(force.computed, rel=1e-9)
     assert released.get_xdata()[-1] == pressed.get_xdata()[-1] == pytest.approx(12.0)
     (dot,) = drawn.axes[1].containers
     assert dot.lines[0].get_ydata() == [185.0]
