@@ -79,10 +79,7 @@ def draw_modes(path: Path, modes: Modes, x: np.ndarray, title: str, source: str)
                 moved = x + sign * SWING * _size(x) * shape
                 axes.plot(moved[:, :2] @ aside, moved[:, 2], color=colour, lw=0.9)
             axes.set(aspect="equal", title=f"{number + 1}: {plain(float(modes.frequencies[number]), 4)} Hz")
-            axes.set_xticks([])
-            axes.set_yticks([])
-            for spine in axes.spines.values():
-                spine.set_visible(False)
+            axes.set_axis_off()
         figure.suptitle(f"{title}\ngrey at rest, red and blue the ends of the swing, enlarged", fontsize=9)
         figure.supxlabel(source, fontsize=6, color="0.5", x=0.99, ha="right")
     save(figure, path)
