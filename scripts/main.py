@@ -299,7 +299,7 @@ def _check_engine(engine: Engine | None, scheduler: str | None) -> None:
     if ranks > 1 and engine in (Engine.dask, Engine.processes):
         raise InputError(f"is {engine.value}, but {ranks} ranks are running; leave one of both out", "--engine")
     if scheduler is not None and engine != Engine.dask:
-        raise InputError("goes with --engine dask", "--scheduler")
+        raise InputError("belongs to --engine dask", "--scheduler")
 
 
 def _check_sweep(sweep_file: str) -> None:

@@ -50,7 +50,7 @@ def load_for_solve() -> None:
     from numba.core.registry import cpu_target
     from numba.core.runtime import rtsys
 
-    target = cpu_target.target_context  # made when it is asked for, with LLVM
+    target = cpu_target.target_context  # made when it is requested, with LLVM
     link_beside(lambda: rtsys.initialize(target))
     import pydantic.main  # noqa: F401
     import ufl  # noqa: F401

@@ -62,7 +62,7 @@ class Check:
 
     @property
     def used(self) -> float:
-        """Share of the tolerance that the deviation uses; 0 where only a bound is asked for."""
+        """Share of the tolerance that the deviation uses; 0 where only a bound is required."""
         return 0.0 if self.kind == "at_most" or not self.tolerance else abs(self.deviation) / self.tolerance
 
     @property

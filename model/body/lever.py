@@ -17,7 +17,7 @@ from coilset.model.rotations.vectors import rotation_derivatives, rotation_matri
 
 
 class Swing(NamedTuple):
-    """How a node goes with the rotation of its head on trial.
+    """How a node goes with the trial rotation of its head.
 
     Attributes:
         shift: (exp[ψ] − 1) r₀, shape (3,), mm.
@@ -50,7 +50,7 @@ class Lever:
         cells: nodes of this rank's cells, shape (cells, 2); elements: their unknowns, shape (cells, k).
 
     Attributes:
-        swing: Swing on trial.
+        swing: trial Swing.
         force: of the cells on the node, kept for the tangent, shape (3,), N.
     """
 

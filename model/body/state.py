@@ -1,4 +1,4 @@
-"""What a step changes: named arrays at the last equilibrium and on trial, and the only transitions between them.
+"""What a step changes: named arrays at the last equilibrium and as trial values, and the only transitions between them.
 
 Body, contacts, seats and solver register their arrays here; a checkpoint needs no more than these.
 """

@@ -105,7 +105,7 @@ def check_times(case: Case, law: Law) -> None:
             )
         if law.is_adiabatic and not case.heat:
             raise InputError(
-                f"plastic work heats '{law.name}', and in time this heat goes somewhere; give the entry "
+                f"plastic work heats '{law.name}', and in time this heat flows away; give the entry "
                 "heat, or a material without heating",
                 f"loading.{number}.{word}",
             )

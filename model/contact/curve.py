@@ -54,10 +54,10 @@ def element_polynomials(y: np.ndarray, first: np.ndarray, cubic: np.ndarray, ele
 
     Args:
         y, first, cubic: as in `point_on_curve`.
-        elements: ranges of those that are asked for, shape (k, 2).
+        elements: ranges of those that are requested, shape (k, 2).
 
     Returns:
-        Shape (n − 1, 4, 4), by element, power and component, mm; only those that are asked for have a meaning.
+        Shape (n − 1, 4, 4), by element, power and component, mm; only those that are requested have a meaning.
     """
     out = np.empty((len(first), 4, 4))
     for part in range(len(elements)):

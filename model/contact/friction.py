@@ -14,7 +14,7 @@ The forces on both bodies do the work t · s. Their stiffness is the derivative 
 with B = 1 and e = 0 where it sticks. It is not symmetric where the contact slides, for t changes with p, p not with t.
 
 This B has no stiffness along e: Newton's method goes past the point where a slip reverses, and back, for ever. The
-tangent of an iteration has therefore the traction λ that the last correction has foreseen,
+tangent of an iteration has therefore the traction λ that the last correction has predicted,
 
     B = μ p/|t*| (1 − λ/(μ p) eᵀ),   λ = t + B Δt* + e μ Δp   of the iterate before, brought into the cone,
 
@@ -43,7 +43,7 @@ NODAL = 3 * STENCIL  # displacements, or rotations, of the four stations that a 
 Pair = tuple[np.ndarray, np.ndarray]
 Tractions = tuple[np.ndarray, np.ndarray, np.ndarray]
 ON_SEAT, ON_COIL = 2 * NODAL + SEAT_DOFS, 4 * NODAL  # unknowns of an element
-FORESEEN = 7  # what is kept of an iterate: t*, μ p, λ
+PREDICTED = 7  # what is kept of an iterate: t*, μ p, λ
 
 
 class Friction(Contact):
@@ -67,9 +67,9 @@ class Friction(Contact):
         traction = np.zeros((*normal.multiplier_offset.shape, 3))
         self.memory = Memory(rows, traction=traction, x=stations, seats=seats)
         self.first_rotation = 3 * n + 2 * SEAT_DOFS  # number of the first degree of freedom of the stations' rotations
-        self._iterate = np.zeros((*traction.shape[:-1], FORESEEN))  # of the tangent before
+        self._iterate = np.zeros((*traction.shape[:-1], PREDICTED))  # of the tangent before
         self._trial: tuple[tuple[np.ndarray, ...], np.ndarray]  # of the last evaluation, where it bears
-        self._trial = (np.empty(0, np.int64),), np.empty((0, FORESEEN))
+        self._trial = (np.empty(0, np.int64),), np.empty((0, PREDICTED))
 
     @abstractmethod
     def touching(self, trial: TrialPositions) -> tuple[np.ndarray, ...]:
@@ -87,7 +87,7 @@ class Friction(Contact):
             trial: TrialPositions.
             at: as `touching` has found.
             tractions: of the last equilibrium, and written, of now, shape (m, 3), N; what is kept of the iterate
-                before, overwritten by the same of now, shape (m, FORESEEN).
+                before, overwritten by the same of now, shape (m, PREDICTED).
             room: written, forces and stiffness, shapes (m, k) and (m, k, k).
         """
 
@@ -222,7 +222,7 @@ def _within(t: Triple, limit: float) -> Triple:
 
 @njit(**COMPILED)
 def _foreseen(t: Triple, limit: float, iterate: np.ndarray, before: Triple) -> Triple:
-    """The traction λ that the correction from the last iterate to t* = `t` and μ p = `limit` has foreseen.
+    """The traction λ that the correction from the last iterate to t* = `t` and μ p = `limit` has predicted.
 
     Where nothing touched then, it is that of the last equilibrium.
     """

@@ -151,7 +151,7 @@ def twist(
 def _coiled(
     wire: Wire, turned: np.ndarray, end: float, relief: Sequence[SectionLaw]
 ) -> tuple[Wire, tuple[float, float], tuple[float, float]]:
-    """The wire after it was turned by θ and φ a length, let go and relieved; curvature and torsion, M3, Mt before."""
+    """The wire after it was turned by θ and φ a length, released and relieved; curvature and torsion, M3, Mt before."""
     d = np.zeros(6)
     for _ in range(LOADING):
         d[[BEND, TWIST]] = turned / LOADING / wire.stretch

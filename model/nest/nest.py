@@ -61,7 +61,7 @@ class Pressed:
 
     @property
     def free_length_after(self) -> float | None:
-        """Height at which the seats touch the first spring after the run, mm; None if one was not let go."""
+        """Height at which the seats touch the first spring after the run, mm; None if one was not released."""
         lengths = [self._after(member) for member in self.members]
         return None if None in lengths else max(length for length in lengths if length is not None)
 

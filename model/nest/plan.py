@@ -33,7 +33,7 @@ class Plan:
         return float(self.heights[0])
 
     def program(self, free_length: float) -> list[Phase]:
-        """The load program of a spring of that free length; at the end it is let go.
+        """The load program of a spring of that free length; at the end it is released.
 
         Above its own free length the seats do not touch it: its program leaves these heights out.
         """

@@ -105,7 +105,7 @@ class ElementKernel:
     ) -> None:
         cells = len(fields[0])
         self._out = np.zeros((min(BLOCK, cells), *shape))
-        self._kept = fields, x, nodes  # C knows their addresses only
+        self._kept = fields, x, nodes  # C holds their addresses only
         self._ffi, self._function = loop
         lengths = [int(np.prod(field.shape[1:])) for field in fields]
         fixed = self._ffi.new("long[]", lengths), sum(lengths), int(np.prod(shape)), self._pointer(self._out)

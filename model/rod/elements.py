@@ -1,7 +1,7 @@
 """The elements of a rod: where their sections are, and the strains that they add to those of their nodes.
 
 The thesis's element has two Gauss sections, one twist φ′ and linear curvatures. Where the wire flows, twist and
-curvature concentrate in the section that bears most. The mixed element adds modes a of each section strain e,
+curvature concentrate in the section that carries most. The mixed element adds modes a of each section strain e,
 
     e = B u + Σ a P(ξ),    ∫ s · δa P(ξ) dx = 0,
 

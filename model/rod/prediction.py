@@ -97,8 +97,8 @@ class Prediction:
 
     Args:
         cells: node numbers, shape (cells, 2).
-        chords: from node to node, shape (cells, 3), mm, on trial.
-        coefficients: Coefficients, on trial.
+        chords: from node to node, shape (cells, 3), mm, of the trial state.
+        coefficients: Coefficients of the trial state.
         numbering: Numbering of the unknowns.
         element: Element.
 
@@ -123,7 +123,7 @@ class Prediction:
         self._sections = element.at_sections
 
     def begin(self, correction: np.ndarray) -> None:
-        """Take the state on trial, from which a correction of the local unknowns begins, mm and rad."""
+        """Take the trial state, from which a correction of the local unknowns begins, mm and rad."""
         for kept, on_trial in zip((self.forces, self.strain, self.tangent), self._on_trial, strict=True):
             np.copyto(kept, on_trial)
         linear_strains(*self._before, correction, self._sections, self.change)

@@ -69,8 +69,8 @@ class Rod(Body):
             `point_state`, shape (cells, sections, points, n_state), and `surface_state` are always there. Rods of up to
             KEPT elements, whose law is rate-independent, also keep `section_forces` and `section_tangents`.
         numbering: Numbering of the unknowns.
-        coefficients: Coefficients of the forms, with the section strains and forces on trial.
-        chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
+        coefficients: Coefficients of the forms, with the section strains and forces of the trial state.
+        chart: tangents of the nodes' trial rotation charts, shape (nodes, 3, 3).
         arms: stations whose unknowns are those of a rigid head, and where they are from its point in the stress-free
             state, shape (3,), mm; `levers`: Levers of those among the local nodes.
     """
@@ -179,16 +179,16 @@ class Rod(Body):
         halfway[:] = self.in_time.clock(*middle, start)
         on_trial[:] = self.in_time.clock(*end, halfway)
 
-    # ---- results on trial ------------------------------------------------------------------------------------------
+    # ---- trial results ------------------------------------------------------------------------------------------
 
     @property
     def x(self) -> np.ndarray:
-        """Positions of the local nodes on trial, shape (nodes, 3), mm."""
+        """Positions of the local nodes in the trial state, shape (nodes, 3), mm."""
         return self._x.trial
 
     @property
     def point_state(self) -> np.ndarray:
-        """State at the section points, MPa: on trial, in a long rod committed; (cells, sections, points, n_state)."""
+        """State at the section points, MPa: trial, in a long rod committed; (cells, sections, points, n_state)."""
         return self._points[POINTS]
 
     @property

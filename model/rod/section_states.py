@@ -1,7 +1,7 @@
 """The states of a rod's section points: what evaluations write of them, and what follows when a step ends.
 
 The points on the surface carry no load: they lie in place and follow when a step ends. In a long rod all points do.
-Their states on trial would fill as much memory as those at the last equilibrium, and each evaluation would write all of
+Their trial states would fill as much memory as those at the last equilibrium, and each evaluation would write all of
 it. So an evaluation keeps one element's at a time, and a step's end finds them once more.
 """
 
@@ -14,7 +14,7 @@ from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
 from coilset.model.section.kinds import Sections
 
 POINTS, SURFACE = "point_state", "surface_state"
-KEPT = 4096  # elements up to which all points' states on trial are kept: as many as a processor's caches may hold
+KEPT = 4096  # elements up to which all points' trial states are kept: as many as a processor's caches may hold
 
 
 class SectionStates:
@@ -57,7 +57,7 @@ class SectionStates:
         return [name for name in self._fields if name != SURFACE]
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """An array on trial, or, where it lies in place, at the last equilibrium."""
+        """A trial array, or, where it lies in place, at the last equilibrium."""
         return self._fields[name].trial
 
     def update(self, s: np.ndarray, D: np.ndarray) -> bool:

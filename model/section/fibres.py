@@ -36,7 +36,7 @@ class FibreSections:
 
     Attributes:
         components: names of the columns of a point's state.
-        passing: arrays of the state on trial in which `update` may write one element after the other in the same place,
+        passing: arrays of the trial state in which `update` may write one element after the other in the same place,
             of which each thread has one.
     """
 

@@ -27,7 +27,7 @@ class Sections(Protocol):
     Attributes:
         radius, placement: of the cells.
         law_over_time: the law of their points.
-        passing: arrays of the state on trial in which `update` may write one element after the other in the same place,
+        passing: arrays of the trial state in which `update` may write one element after the other in the same place,
             of which each thread has one.
         threads: Threads that advance them.
     """

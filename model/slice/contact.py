@@ -112,7 +112,7 @@ class SelfContact:
         return length * weights * np.hypot(radius, self.body.coil.rise)
 
     def _corner_gap(self, κ: float) -> float:
-        """Smallest gap of the corners on the upper side, which no Gauss point sees, mm; infinite without corners."""
+        """Smallest gap of the corners on the upper side, which no Gauss point covers, mm; infinite without corners."""
         smallest = np.inf
         for above, t in zip(self._corners, (1.0, 0.0), strict=True):
             if len(above):

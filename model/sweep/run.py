@@ -39,7 +39,7 @@ class Limits:
     """When a sweep ends although cases are missing.
 
     Attributes:
-        until: seconds from `began` by which it ends, as far as the cases so far allow to foresee.
+        until: seconds from `began` by which it ends, as far as the cases so far allow a prediction.
         budget: seconds of all cases together, on one core each, after which no case is started.
         began: time.monotonic() of the start.
     """

@@ -56,7 +56,7 @@ class Study:
         self._extra: list[tuple[tuple[Any, ...], str]] = []
 
     def ask(self, n: int = 1, values: Sequence[Mapping[str, float]] | None = None) -> list[Trial]:
-        """The next cases: of the plan those that nobody has computed or asked for, or those with given inputs.
+        """The next cases: of the plan those that nobody has computed or requested, or those with given inputs.
 
         Args:
             n: number of cases of the plan; fewer are returned at its end.

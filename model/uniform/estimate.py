@@ -58,7 +58,7 @@ def estimate(case: Case, spring: Spring, law: Law) -> Estimate:
     state: UniformState | np.ndarray = one
     travel, force, greatest, torque = 0.0, 0.0, 0.0, 0.0
     for number, phase in enumerate(case.loading):
-        # time passes or a head moves sideways: the uniform rod knows neither
+        # time passes or a head moves sideways: the uniform rod models neither
         if not isinstance(phase, Phase) or not phase.drives_axially:
             continue
         kind, end = phase.goal(length, spring.block_height)

@@ -9,7 +9,7 @@ from coilset.model.case import check
 from coilset.model.contact.base import SEAT_DOFS, TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine
-from coilset.model.contact.friction import FORESEEN, CoilFriction, SeatFriction, along_cone, on_cone
+from coilset.model.contact.friction import PREDICTED, CoilFriction, SeatFriction, along_cone, on_cone
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
 from coilset.model.results.files.checkpoint import Checkpoint
@@ -116,7 +116,7 @@ def test_tractions_stay_in_the_cone_and_points_stick_and_slide(rubbing, kind, se
 def test_stiffness_is_a_chord_where_a_slip_reverses():
     """From t* = 2 to −3 under μ p = 1, with the tangent of the last iterate on the way: 0 along the slip, so that 1 is
     foreseen, where −1 is found. The chord from there to slip 0, with t = 1, is 2/3; across it the stiffness is 1/3."""
-    n, nothing, iterate = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), np.zeros(FORESEEN)
+    n, nothing, iterate = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0), np.zeros(PREDICTED)
     for T, along in (((2.0, 0.0, 0.0), 0.5), ((2.0, 0.0, 0.0), 0.0), ((-3.0, 0.0, 0.0), 2.0 / 3.0)):
         t, cone = on_cone(T, n, 1.0, nothing, iterate)
         assert t == pytest.approx((np.sign(T[0]), 0.0, 0.0))

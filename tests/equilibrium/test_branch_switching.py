@@ -73,7 +73,7 @@ def test_beyond_its_limit_a_truss_snaps_to_the_other_side(factor):
 
 
 def test_an_unstable_truss_falls_back_to_where_it_came_from():
-    """At half its limit it is let go from the unstable equilibrium between its two stable ones."""
+    """At half its limit it is released from the unstable equilibrium between its two stable ones."""
     frame, before = near_limit()
     there = brentq(lambda w: force(w) - 0.5 * LIMIT, 0.5 * RISE, RISE)
     start = frame.layout.vector()

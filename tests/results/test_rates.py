@@ -1,4 +1,4 @@
-"""Rates from a characteristic, against curves whose slope is known, and active turns of a spring that is let go."""
+"""Rates from a characteristic, against curves whose slope is known, and active turns of a spring that is released."""
 
 import numpy as np
 import pytest

@@ -7,9 +7,9 @@ driven head's force is wrong by
     ΔF = ΔW / Δs   at its height,   and its height by   Δs_F = ΔF / (∂F/∂s)   at its force,
 
 where Δs is the step's travel and ∂F/∂s its secant. Of the error that comes in with one step, the work on the first
-step's deformation, which is elastic, gives in the same way what will be wrong when the spring is let go: the set. The
+step's deformation, which is elastic, gives in the same way what will be wrong when the spring is released: the set. The
 greater of both, ΔF', is of third order in the step's size h, so that h (a/ΔF')^⅓ is the size of a step that brings in
-a. What all steps together leave, E, shall not exceed the accuracy asked for, A: where more than half of it is used up,
+a. What all steps together leave, E, shall not exceed the required accuracy, A: where more than half of it is used up,
 a step may bring in less to E, in proportion to the rest of it, 2 (1 − |E|/A). Over an automatic step in which contacts
 close or open the path of strains is taken for kinked.
 """
@@ -48,7 +48,7 @@ class StepError:
         self._memory = control.system.state.add("step_error", np.zeros(3), Where.SHARED)
 
     def estimate(self, ratio: float, controls: bool) -> Estimate:
-        """Judge the state on trial, once, before it is committed or given up; collective.
+        """Judge the trial state, once, before it is committed or given up; collective.
 
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
@@ -90,7 +90,7 @@ class StepError:
         return max(abs(new) / allowed, abs(left) / (allowed * min(max(rest, self.steps.least_rest), 1.0)))
 
     def _takes_time(self) -> bool:
-        """Does time pass in the step on trial?"""
+        """Does time pass in the trial step?"""
         state = self.control.system.state
         return "clock" in state and not np.array_equal(state["clock"].trial, state["clock"].equilibrium)
 

@@ -60,7 +60,7 @@ def find_places(indptr: np.ndarray, indices: np.ndarray, dofs: np.ndarray, left_
     Args:
         indptr, indices: pattern of the matrix, which has them all.
         dofs: unknowns of the elements, shape (cells, k).
-        left_out: elements that are not asked for, shape (cells,), bool.
+        left_out: elements that are not requested, shape (cells,), bool.
 
     Returns:
         Places in the rows, in 8 bits where they suffice, shape (cells, k, k).

@@ -19,7 +19,7 @@ BOX, MOTION, SPAN, LONGEST = slice(6), slice(6, 12), slice(12, 15), 15  # in wha
 
 
 class Halo:
-    """Positions on trial, of this rank's part of the wire and of what is near it.
+    """Trial positions of this rank's part of the wire and of what is near it.
 
     If some kind of contact cannot be evaluated from nearby stations alone, every rank has all stations.
 

@@ -125,7 +125,7 @@ class Load:
 
     @cached_property
     def prescribed(self) -> float:
-        """Norm of the prescribed increments; collective when it is first asked for."""
+        """Norm of the prescribed increments; collective when it is first requested."""
         return float(np.sqrt(sum_of_ranks(self.layout.comm, self.increments @ self.increments)))
 
     def multiple_of(self, other: "Load") -> float:
@@ -134,7 +134,7 @@ class Load:
 
     @cached_property
     def _greatest(self) -> float:
-        """The greatest of the prescribed increments of all ranks; collective when it is first asked for."""
+        """The greatest of the prescribed increments of all ranks; collective when it is first requested."""
         return max_of_ranks(self.layout.comm, largest(self.increments))
 
     def misses(self, increments: np.ndarray, load_factor: float) -> bool:

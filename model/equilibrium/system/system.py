@@ -54,7 +54,7 @@ class System:
     Attributes:
         state: the body's State, with `seats`, the contacts' memories, the `increments` of the last step, those of the
             step before it, and the internal forces `reactions` beside the body's fields.
-        increments: PETSc's vector of the increments on trial, that of the state.
+        increments: PETSc's vector of the trial increments, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
         touching: ContactParts, if there are contacts.
         last: Evaluation.
@@ -94,7 +94,7 @@ class System:
 
     @property
     def seats(self) -> np.ndarray:
-        """x, y, z and rotations of both seats on trial, shape (12,), mm and rad."""
+        """x, y, z and rotations of both seats in the trial state, shape (12,), mm and rad."""
         assert self._seats is not None, "this body has no seats"
         return self._seats.trial
 
@@ -243,7 +243,7 @@ class System:
         self.forget_iterate()
 
     def forget_iterate(self) -> None:
-        """Forget what contacts foresee for the last correction; the next state is another one."""
+        """Discard the tractions predicted for the last correction; the next state is another one."""
         if self.contacts:
             self.touching.forget_iterate()
         self.expire()

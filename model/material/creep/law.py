@@ -22,7 +22,7 @@ GAS_CONSTANT = 8.31446261815324  # J/(mol K)
 # The clock of a body: hours since the start, temperature (K), and the equivalent hours at T₀.
 HOURS, TEMPERATURE, WORTH = range(3)
 # What is_resolved asks for. Of an error of third order in the creep strain, equal halves remove three quarters; where
-# they remove less than a third of that, it is told three times too small. SLOWING is the logarithm of the factor by
+# they remove less than a third of that, it is three times too small. SLOWING is the logarithm of the factor by
 # which creep may become slower: up to 1.7, holds in one to six steps tell 0.6 of their error and more, with three
 # laws; from 2.0 on some tell a fifth of it, or another sign. Where it becomes slower by STEADY or less there is hardly
 # an error, however the halves share the creep.

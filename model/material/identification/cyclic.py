@@ -178,7 +178,7 @@ def _refuse_one_way(paths: Sequence[_Path]) -> None:
         if min(down.max(), up.max()) > BOTH_WAYS:
             return
     raise InputError(
-        "no test flows in both directions; without a reversal back stresses cannot be told from the size "
+        "no test flows in both directions; without a reversal back stresses cannot be separated from the size "
         "of the yield surface"
     )
 

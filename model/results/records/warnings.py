@@ -18,7 +18,7 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 # Change of the force over that of the travel, both in per cent, from which a spring counts as standing on a wall: a
 # spring of constant rate has 1, the example at block 1.1, the cone 160.
 WALL = 20.0
-WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is asked for
+WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is required
 LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
 ROUNDING = 1e-3  # by which a limit that is given with few digits may be exceeded
 NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
@@ -275,7 +275,7 @@ def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
 
 
 def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
-    """The numbers whose error by all causes is above the accuracy that was asked for, unless the steps alone are."""
+    """The numbers whose error by all causes is above the required accuracy, unless the steps alone are."""
     asked, errors = setup.limits.accuracy, result.errors
     if asked is None or errors is None or any(_step_error(setup, result)):
         return

@@ -64,7 +64,7 @@ def strongest(of: str, names: Sequence[str], correlation: np.ndarray, interval: 
     if interval[first, 0] <= 0.0 <= interval[first, 1]:
         return f"No input moves the {of} more than chance would"
     way = "larger" if correlation[first] > 0.0 else "smaller"
-    return f"A greater {names[first]} goes with a {way} {of} most clearly"
+    return f"A greater {names[first]} comes with a {way} {of} most clearly"
 
 
 def share(of: str, names: Sequence[str], total: np.ndarray) -> str:

@@ -141,7 +141,7 @@ def slice_rate(law: Law, level: float, index: float) -> float:
 
 
 def plastic(study: Study, law: Law, level: float, index: float = 8.0) -> None:
-    """Pull apart and let go."""
+    """Pull apart and release."""
     R = RADIUS * index
     body = Slice(section(level, 7.0), Coil(R, 0.0), law)
     problem, ours = SliceProblem(body, free_ends=True), CutCoil(law, level, index)
@@ -152,4 +152,4 @@ def plastic(study: Study, law: Law, level: float, index: float = 8.0) -> None:
     name = f"flat at {level:g} r, pulled by {travel:.4g} mm a turn"
     study.check(f"{name}: force, N", force, -problem.force, "slice", 2e-2)
     problem.go_to_force(0.0)
-    study.check(f"{name}, let go: set, mm", ours.go_to(None)[0], 2.0 * np.pi * body.rise, "slice", 6e-2)
+    study.check(f"{name}, released: set, mm", ours.go_to(None)[0], 2.0 * np.pi * body.rise, "slice", 6e-2)

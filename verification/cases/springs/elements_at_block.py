@@ -1,10 +1,10 @@
 """Springs to block and back with both elements on finer and finer meshes: force at block and set, against their limit
 
 Where coils close, torsion turns into bending within a few wire diameters and the wire flows there. The thesis's element
-has one twist and linear curvatures, so that it cannot flow in the section that bears most alone: without hardening the
-error of the force at block is of the first order in the length of the elements. In the mixed element the section forces
-are in equilibrium with those at the nodes, and sections are at the nodes, where the moments of contact forces are
-greatest.
+has one twist and linear curvatures, so that it cannot flow in the section that carries most alone: without hardening
+the error of the force at block is of the first order in the length of the elements. In the mixed element the section
+forces are in equilibrium with those at the nodes, and sections are at the nodes, where the moments of contact forces
+are greatest.
 
 A cone of nine turns of ideally plastic wire is the hardest case; an open cylinder hardens. The limit is that of the
 thesis's element, extrapolated from its three finest meshes with the order that they show (Aitken). The mixed element,
