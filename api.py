@@ -39,8 +39,11 @@ from coilset.model.base.errors import CoilsetError, InputError, SolveError, read
 from coilset.model.case.case import Case as CheckedCase
 from coilset.model.case.case import check, read_case
 from coilset.model.case.settings import put
+from coilset.model.equilibrium.path.step_control import StepSizes
 from coilset.model.material import library
-from coilset.model.material.law.law import Law
+from coilset.model.material.law.condense import condense as _condense
+from coilset.model.material.law.law import Law as _LibraryLaw
+from coilset.model.material.law.own import OwnLaw
 from coilset.model.material.programs import Program
 from coilset.model.material.programs import run as run_program
 from coilset.model.results.characteristic import place_at
@@ -50,7 +53,7 @@ from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
-from coilset.model.run.analysis import Analysis
+from coilset.model.run.analysis import Analysis, FurtherContacts
 from coilset.model.run.refinement import within_accuracy
 from coilset.model.runtime.processes import usable_cores
 from coilset.model.runtime.threads import usual
@@ -64,11 +67,13 @@ __all__ = [
     "CoilsetError",
     "Design",
     "InputError",
+    "Law",
     "Material",
     "Result",
     "SolveError",
     "Step",
     "Study",
+    "condense",
     "design",
     "material",
     "modes",
@@ -156,6 +161,62 @@ class Case:
         'ck15'
         """
         Path(path).write_text(yaml.safe_dump(self.entries, sort_keys=False, allow_unicode=True), encoding="utf-8")
+
+
+class Law(OwnLaw):
+    """A law of one's own for the points of the wire's section, given to `solve`.
+
+    Args:
+        update: function of plain Python that numba can compile,
+
+                update(stress, state, strain, parameters, new_stress, new_state, tangent) -> bool
+
+            It reads stress (σ11, τ12, τ13), MPa, and state at the start, the increment of (ε11, γ12, γ13) and the
+            parameters; writes stress and state at the end and the consistent tangent, shape (3, 3); and returns whether
+            it found a solution. The first four numbers of the state are reported as back stress B11, B12, B13 and
+            plastic work b; they begin at zero.
+        parameters: passed on.
+        variables: names of the numbers of the state beyond these four.
+        name: in results.
+
+    Raises:
+        InputError: numba cannot compile it; it writes into its arguments, leaves results unset, remembers something
+            outside of the state, or changes stress without strain; or its tangent fails the Taylor test.
+
+    >>> def hooke(stress, state, strain, parameters, new_stress, new_state, tangent):
+    ...     new_state[:] = state
+    ...     tangent[:] = 0.0
+    ...     for i in range(3):
+    ...         tangent[i, i] = parameters[min(i, 1)]
+    ...         new_stress[i] = stress[i] + tangent[i, i] * strain[i]
+    ...     return True
+    >>> law = Law(hooke, [206e3, 79.3e3])
+    >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 1}, steps: 1}]", "accuracy=none"])
+    >>> print(f"{solve(case, law=law).force[0]:.1f} N")
+    39.3 N
+    """
+
+
+def condense(law3d: Callable[..., bool]) -> Callable[..., bool]:
+    """The law of a point in the wire from a three-dimensional one: the stresses across the wire are brought to zero.
+
+    Args:
+        law3d: as `update` of `Law`, with the six components 11, 22, 33, 12, 13, 23 and engineering shear strains.
+
+    >>> def hooke(stress, state, strain, parameters, new_stress, new_state, tangent):
+    ...     new_state[:] = state
+    ...     tangent[:] = 0.0
+    ...     for i in range(3):
+    ...         tangent[i, :3] = 121e3
+    ...         tangent[i, i] += 2.0 * 81e3
+    ...         tangent[i + 3, i + 3] = 81e3
+    ...     new_stress[:] = stress + tangent @ strain
+    ...     return True
+    >>> law = Law(condense(hooke))
+    >>> print(f"E = {law.E:.0f} MPa, G = {law.G:.0f} MPa")
+    E = 210520 MPa, G = 81000 MPa
+    """
+    return _condense(law3d)
 
 
 @dataclass(frozen=True)
@@ -275,7 +336,13 @@ class Result:
 
 
 def solve(
-    case: Case, report: Callable[[Step], object] = lambda step: None, threads: int | None = None, comm: Any = None
+    case: Case,
+    report: Callable[[Step], object] = lambda step: None,
+    threads: int | None = None,
+    comm: Any = None,
+    law: "Law | None" = None,
+    contacts: FurtherContacts | None = None,
+    steps: type[StepSizes] = StepSizes,
 ) -> Result:
     """Run the load program of a case, and again finer where its errors exceed its accuracy; collective.
 
@@ -284,6 +351,10 @@ def solve(
         report: called with each converged Step, of each run.
         threads: of each rank; default is as `coilset solve`. No number depends on it.
         comm: MPI communicator whose ranks share the spring; default is all.
+        law: Law of one's own, in the place of the case's material.
+        contacts: function of the wire's points and the stations' positions that makes further kinds of contact, see
+            examples/own/contact.py.
+        steps: class that decides how long steps are, see examples/own/steps.py.
 
     Raises:
         InputError: the spring cannot be built, or cannot do what its load program requires.
@@ -295,7 +366,7 @@ def solve(
     set 13.29 mm of 35 mm
     """
     comm = MPI.COMM_WORLD if comm is None else comm
-    first = Analysis(case._case, comm, threads=threads or usual(comm.size))
+    first = Analysis(case._case, comm, threads=threads or usual(comm.size), law=law, contacts=contacts, steps=steps)
     analysis = within_accuracy(first, lambda one, _: one.run(report))
 
     def write(folder: Path) -> None:
@@ -502,7 +573,7 @@ class Material:
     E: float
     G: float
     nu: float
-    _law: Law = field(repr=False, compare=False)
+    _law: _LibraryLaw = field(repr=False, compare=False)
 
     def tension(self, strain: Sequence[float]) -> np.ndarray:
         """Stress at the end of each segment of a uniaxial test, MPa.

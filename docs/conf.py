@@ -10,6 +10,7 @@ DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS / "generators"))
 
 import command_pages  # noqa: E402
+import demo_pages  # noqa: E402
 import docstrings  # noqa: E402
 import entry_pages  # noqa: E402
 import formulas  # noqa: E402
@@ -55,6 +56,7 @@ def _generate(app: Sphinx) -> None:
     """Write the pages that are read off the program."""
     entry_pages.write(DOCS / "reference" / "generated")
     command_pages.write(DOCS / "reference" / "generated")
+    demo_pages.write(DOCS / "demos" / "generated")
     python_pages.write(DOCS / "reference" / "python")
 
 

@@ -8,6 +8,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case
 from coilset.model.case.phases import Phase, Target, TimePhase
 from coilset.model.material.law.law import Law
+from coilset.model.material.law.own import OwnLaw
 
 SLACK = 1e-9  # of the free length: rounding of a height that was computed
 BORNE = 2.0  # times the elastic force at which all coils are in contact: a target beyond it is not reasonable
@@ -173,4 +174,28 @@ def _not_below(target: Target, free_length: float, lowest: float, place: str) ->
         raise InputError(
             f"is {target.height:g} mm, below the block height of {lowest:.6g} mm; give block, or more",
             f"{place}.height",
+        )
+
+
+def check_own_law(case: Case, law: OwnLaw) -> None:
+    """Reject what a law of one's own cannot do.
+
+    Raises:
+        InputError: an entry that needs a material of a file, or sections whose directions across the wire are arbitrary
+            under a law that has directions.
+    """
+    if not isinstance(case.material, str):
+        raise InputError("a named wire has its own law; give material: elastic with a law of one's own", "material")
+    if case.past:
+        raise InputError(
+            "coiling and peening need a material of a file, not a law of one's own", f"spring.{case.past[0]}"
+        )
+    if case.mesh.section.spin:
+        raise InputError("a law of one's own brings its own rates; leave spin out", "mesh.section.spin")
+    if case.mesh.section.kind == "warping":
+        raise InputError("a law of one's own has three stresses; give curved or plane", "mesh.section.kind")
+    if case.mesh.section.kind == "plane" and not law.keeps_direction:
+        raise InputError(
+            "the law differs with the direction across the wire, which plane sections do not fix; give curved",
+            "mesh.section.kind",
         )

@@ -26,7 +26,7 @@ class LawOverTime:
     def __init__(self, law: Law, parameters: np.ndarray, temperature: float | None) -> None:
         self._law, self._temperature = law, temperature
         point_law = law.point_law(temperature)
-        self._point_law = law.parts(parameters) if isinstance(point_law, Parts) else parameters
+        self._point_law = parameters if isinstance(point_law, np.ndarray) else law.parts(parameters)
         self.in_time = law_in_time(law, parameters)
 
     def columns(self, back_stress: tuple[str, ...]) -> tuple[str, ...]:

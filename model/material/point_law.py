@@ -1,6 +1,7 @@
 """The law of a section point: numba selects it by the type of the argument that represents the law.
 
-A parameter array means the exponential return map, `Parts` the point problem. The choice is made when a section's loop
+A parameter array means the exponential return map, `Parts` the point problem, `OwnPoints` a law of one's own, to whose
+loop it holds a pointer. The choice is made when a section's loop
 is compiled (njit) for one of them: a material of the first kind has no extra cost for what it does not do, and compiles
 none of it.
 """
@@ -14,6 +15,7 @@ from numba.extending import overload
 
 from coilset.model.base.kernel import KERNEL
 from coilset.model.material.creep import rod as creep_rod
+from coilset.model.material.law.parts import OwnPoints
 from coilset.model.material.point import rod, solid
 from coilset.model.material.point.increment import advance
 from coilset.model.material.point.rod_rows import return_map_points
@@ -56,7 +58,25 @@ def _rod_points(
         return lambda law, old, de, new, tangent, with_tangent, count: return_map_points(
             law, old, de, new, tangent, with_tangent, count
         )
+    if law.instance_class is OwnPoints:
+        return lambda law, old, de, new, tangent, with_tangent, count: own_points(law, old, de, new, tangent, count)
     return lambda law, old, de, new, tangent, with_tangent, count: one_by_one(law, old, de, new, tangent, count)
+
+
+@njit(**KERNEL)
+def own_points(
+    law: OwnPoints, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+) -> bool:
+    """One increment of a law of one's own at many points, or at one with `de` and `tangent` of shapes (3,), (3, 3)."""
+    places = old.ctypes, de.ctypes, law.values.ctypes, len(law.values), new.ctypes, tangent.ctypes, count.ctypes
+    return law.loop(*places, len(count)) == 1
+
+
+@njit(**KERNEL)
+def _own_point(law: OwnPoints, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
+    count = np.empty(1, np.int64)
+    own_points(law, old, de, new, C, count)
+    return count[0]
 
 
 @njit(**KERNEL)
@@ -99,6 +119,8 @@ def _rod_point(law: Any, old: Any, e11: Any, g12: Any, g13: Any, new: Any, C: An
 @overload(any_point, strict=False)
 def _any_point(law: Any, old: Any, de: Any, new: Any, C: Any) -> Callable[..., int]:
     if isinstance(law, types.BaseNamedTuple):
+        if law.instance_class is OwnPoints:
+            return lambda law, old, de, new, C: _own_point(law, old, de, new, C)
         return lambda law, old, de, new, C: advance(law, old, de, new, C)
     return lambda law, old, de, new, C: (
         rod.return_map(law, old, de[0], de[1], de[2], new, C)

@@ -3,7 +3,7 @@
 import logging
 import math
 from collections.abc import Callable, Sequence
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -13,13 +13,18 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.body.state import State
 from coilset.model.case import Case
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase, drives_at, heads_of
-from coilset.model.case.targets import check_steps, check_targets, check_times, check_working
+from coilset.model.case.targets import check_own_law, check_steps, check_targets, check_times, check_working
+from coilset.model.contact.base import Contact
 from coilset.model.contact.build import build_contacts, seats_at
+from coilset.model.contact.curve import CentreLine, WirePoints
 from coilset.model.equilibrium.path.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.path.stability import Stability
+from coilset.model.equilibrium.path.step_control import StepSizes
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
 from coilset.model.manufacture.initial_state import give_past
+from coilset.model.material.law.law import Law
+from coilset.model.material.law.own import OwnLaw
 from coilset.model.results.files.checkpoint import Saved
 from coilset.model.results.records.record import Result, Snapshot, Step
 from coilset.model.run.balance import imbalance
@@ -38,6 +43,7 @@ from coilset.model.run.working import working_states
 from coilset.model.standards.wires.law import case_law
 
 log = logging.getLogger("coilset.steps")
+FurtherContacts = Callable[[WirePoints, np.ndarray], Sequence[Contact]]
 
 
 class Save(Protocol):
@@ -58,6 +64,10 @@ class Analysis:
         threads: of each rank, see coilset.model.runtime.threads.
         estimates: estimate the errors of mesh, section and contact at the end of a run, see
             coilset.model.run.companion; never with `accuracy: none`.
+        law: in the place of the case's material; None: that.
+        contacts: from the wire's points and the positions of the stations, shape (n, 3), mm, further kinds of contact;
+            the errors of mesh, section and contact are then not estimated.
+        steps: how long steps are, StepSizes.
 
     Raises:
         InputError: if the spring or the material cannot be built.
@@ -66,6 +76,7 @@ class Analysis:
         setup: Setup of the records.
         result: Result up to now.
         threads: of each rank.
+        further: law, contacts and steps as given, by their names.
         system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
 
@@ -76,11 +87,17 @@ class Analysis:
         detailed: bool = True,
         threads: int = 1,
         estimates: bool = True,
+        law: Law | None = None,
+        contacts: FurtherContacts | None = None,
+        steps: type[StepSizes] = StepSizes,
     ) -> None:
         self.case, self.comm, self.threads = case, comm, threads
-        self._estimates = estimates and case.steps_error is not None
+        self.further: dict[str, Any] = {"law": law, "contacts": contacts, "steps": steps}
+        self._estimates = estimates and case.steps_error is not None and contacts is None
         self.spring = spring = case.spring.build()
-        self.law = case_law(case, spring)
+        self.law = case_law(case, spring) if law is None else law
+        if isinstance(self.law, OwnLaw):
+            check_own_law(case, self.law)
         check_steps(case)
         check_targets(case, spring, self.law.G)
         check_working(case, spring, self.law.G)
@@ -91,17 +108,22 @@ class Analysis:
         coiling_diameter = give_past(self.rod, case.spring)
         seats = case.seats if case.ends == "seats" else None
         moving = frozenset(end for phase in case.loading for end in heads_of(phase))
-        contacts = build_contacts(case.contact, seats, spring, wire.turns, self.rod.line.stations, self.law.E, moving)
+        kinds = build_contacts(case.contact, seats, spring, wire.turns, self.rod.line.stations, self.law.E, moving)
+        if contacts is not None:
+            radius, lengths = 0.5 * spring.wire_diameter(wire.turns), np.diff(spring.arc_length(wire.turns))
+            points = CentreLine(wire.turns, radius, lengths).points()
+            kinds.extend(contacts(points, self.rod.line.stations))
         self.layout = LineLayout(self.rod)
-        self.system = System(self.rod, self.layout, contacts, seats_at(spring.free_length))
+        self.system = System(self.rod, self.layout, kinds, seats_at(spring.free_length))
         least_radius = float(wire.radius.min())
         self.newton = build_newton(case, self.system, least_radius)
         self.control = build_control(case, spring, self.system)
         self.stability = Stability(self.newton.iteration)
         self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
         self.continuation.refusal = self._passed
+        self.continuation.steps = steps(case.solver.control.steps)
         self.program = LoadProgram(self.control, self.continuation)
-        self.setup = build_setup(case, spring, wire, contacts, coiling_diameter)
+        self.setup = build_setup(case, spring, wire, kinds, coiling_diameter)
         self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.stability, detailed)
 
     @property

@@ -63,7 +63,7 @@ def within_accuracy(first: Analysis, run: Callable[[Analysis, str], object]) -> 
         finer = finer_case(analysis, left)
         if finer is None:
             break
-        again = Analysis(finer.case, analysis.comm, threads=first.threads)
+        again = Analysis(finer.case, analysis.comm, threads=first.threads, **first.further)
         try:
             run(again, finer.changes)
         except SolveError as error:

@@ -9,7 +9,7 @@ from mpi4py import MPI
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case, check
-from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.files.checkpoint import Checkpoint, Saved
 from coilset.model.results.files.opened import open_run
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards.wires.law import case_elastic
@@ -64,16 +64,31 @@ def after_results(folder: str | Path, at: str = "end", comm: MPI.Comm = MPI.COMM
     """
     run: Case = check(open_run(folder).case, Path("case"))
     case = _gone_on(run, at)
-    checkpoint = Checkpoint(folder, case)
-    checkpoint.require()
+    saved = _saved(Path(folder), case, comm)
     analysis = Analysis(case, comm, detailed=False, estimates=False)
-    saved = checkpoint.load(comm)
     if saved.position.stage < len(run.loading):
         raise InputError("the run did not reach its end; continue it by solve --resume first", "", folder)
     analysis.resume(saved)
     if at != "end":
         analysis.run()
     return analysis
+
+
+def _saved(folder: Path, case: Case, comm: MPI.Comm) -> Saved:
+    """The checkpoint of the finest run of this case in a folder; collective."""
+    refusal: InputError | None = None
+    for number in range(len(list(folder.glob("checkpoint-*"))), -1, -1):
+        checkpoint = Checkpoint(folder, case, number)
+        if number == 0 and refusal is None:
+            checkpoint.require()
+        if not checkpoint.state.path.exists():
+            continue
+        try:
+            return checkpoint.load(comm)
+        except InputError as error:  # of a run that was coarser, or discarded
+            refusal = refusal or error
+    assert refusal is not None
+    raise refusal
 
 
 def _gone_on(case: Case, at: str) -> Case:

@@ -82,7 +82,7 @@ def test_a_process_that_dies_is_reported():
 
 
 def test_each_law_and_kind_of_section_is_compiled_before_its_first_spring_is_timed():
-    """Spring 8 was taken for one beyond 60 s, all of which were spent on compiling its law."""
+    """Spring 62 seemed to take 60 s without a step, all of which were spent on compiling its law."""
     cases = [springs.random_spring(number) for number in (3, 4, 8, 62)]
     short = [springs.warming(case) for case in cases]
     assert [one["material"] for one in short] == ["ck15", "ck15", "chaboche", "chaboche"]

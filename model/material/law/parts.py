@@ -12,6 +12,8 @@ CREEP_ENTRIES = 9  # of the array of creep
 # that array; ⅔Cᵢ and γᵢ of the back stresses that saturate, shape (temperatures, terms, 2), no terms: the one of ζ, or
 # none; and the array of creep (`creep.flow`), whose time is 0 where nothing creeps.
 Parts = namedtuple("Parts", "plastic terms viscous")
+# The law of one's own in that place: a compiled loop over the points, and its parameters, see `own`.
+OwnPoints = namedtuple("OwnPoints", "loop values")
 # ζᵢ and γᵢ of a back stress with their slopes in b*, as it saturates with Ḃᵢ = ζᵢ D_pl − γᵢ Bᵢ ṗ.
 Saturation = namedtuple("Saturation", "zeta gamma d_zeta d_gamma")
 

@@ -3,7 +3,7 @@
 Two springs without load: the stout one of the example, d 5 and D 40 with 4 turns of 12 mm, and the slender one that the
 literature on vibration uses, d 1, D 10, 7.6 turns at 8.57°, E = 206,000 MPa, ν = 0.3, 7,900 kg/m³ (J. E. Mottershead,
 1980; of his measured frequencies only second-hand figures were at hand, so none is judged). The reference is the
-transfer matrix of the helix (`references/helix_vibration.py`), with the whole area in shear, as plane sections have it.
+transfer matrix of the helix (`vibration/helix.py`), with the whole area in shear, as plane sections have it.
 
 Tolerance: with n rods per turn the straight chords are off by (2 π/n)⁴/1000 at these modes, 2.4e-5 at n = 16. Curved
 sections are stiffer than plane ones by up to (d/D)², as a ring in torsion is by Göhner's theory: half of that is
@@ -28,8 +28,8 @@ from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import polar
 from coilset.model.vibration.modes import Modes, natural_modes
 from coilset.verification.chain import elastic
-from coilset.verification.references.helix_vibration import HelicalRod
 from coilset.verification.study import Study
+from coilset.verification.vibration.helix import HelicalRod
 
 FAST = True
 SPRINGS = {"stout": (5.0, 40.0, 4.0, 12.0), "slender": (1.0, 10.0, 7.6, 10.0 * np.pi * np.tan(np.radians(8.5744)))}

@@ -1,0 +1,161 @@
+"""Laws written for `coilset.api.Law`, independently of the built-in ones: Prager in both forms, and Drucker.
+
+Linear kinematic hardening, |n| = k, Ḃ = ζ ḋ, ṅ = ė − (c + ζ) ḋ, with ḋ = λ n for constant λ and ė, has the solution
+
+    n = φ n₀ + (1 − φ)/(s Λ) e,    φ = exp(−s Λ),    s = c + ζ,    |n(Λ)| = k,
+
+with c = ⅔ E for the axial component of a fibre and 2 G for all others. Λ is found by Newton's method; the tangent
+follows from |n|² = k² by the implicit function theorem, including the fraction β of the increment that stays elastic.
+"""
+
+import numpy as np
+from numba import njit
+
+COMPILED = njit(cache=True, error_model="numpy")
+
+
+@COMPILED
+def _prager(n0, e, c, weight, ζ, k2, n, dn):  # type: ignore[no-untyped-def]
+    """n at the end and ∂n/∂e of an increment e of the elastic deviator; the elastic fraction β is taken off before."""
+    size = len(n0)
+    trial = n0 + e
+    if (weight * trial * trial).sum() <= k2 * (1.0 + 1e-12):
+        n[:] = trial
+        for i in range(size):
+            for j in range(size):
+                dn[i, j] = 1.0 if i == j else 0.0
+        return False
+    ee, ne, nn = (weight * e * e).sum(), (weight * n0 * e).sum(), (weight * n0 * n0).sum()
+    β = max((-ne + np.sqrt(max(ne * ne - ee * (nn - k2), 0.0))) / ee, 0.0) if nn < k2 * (1.0 - 1e-12) else 0.0
+    if β == 0.0 and ne < 0.0:  # from the surface through the inside
+        β = -2.0 * ne / ee
+    start, rest = n0 + β * e, (1.0 - β) * e
+    s, Λ = c + ζ, 0.0
+    φ, ψ, slope = np.ones(size), np.ones(size), np.zeros(size)
+    for _iteration in range(100):
+        x = s * Λ
+        for i in range(size):
+            φ[i] = np.exp(-x[i])
+            ψ[i] = -np.expm1(-x[i]) / x[i] if x[i] > 1e-8 else 1.0 - 0.5 * x[i]
+            dψ = (φ[i] - ψ[i]) / x[i] if x[i] > 1e-4 else -0.5 + x[i] / 3.0
+            slope[i] = s[i] * (-φ[i] * start[i] + dψ * rest[i])
+        n[:] = φ * start + ψ * rest
+        length = np.sqrt((weight * n * n).sum())
+        change = (1.0 / length - 1.0 / np.sqrt(k2)) / ((weight * n * slope).sum() / length**3)
+        Λ += change
+        if abs(change) <= 1e-15 * abs(Λ):
+            break
+    dβ = np.zeros(size)
+    if β > 0.0:  # |n₀ + β e|² = k²
+        dβ = -β * weight * start / (weight * start * e).sum()
+    for j in range(size):
+        for i in range(size):
+            dn[i, j] = (φ[i] - ψ[i]) * e[i] * dβ[j]
+        dn[j, j] += φ[j] * β + ψ[j] * (1.0 - β)
+    down = (weight * n * slope).sum()
+    for j in range(size):
+        dΛ = -(weight * n * dn[:, j]).sum() / down
+        for i in range(size):
+            dn[i, j] += slope[i] * dΛ
+    return True
+
+
+@COMPILED
+def kinematic(stress, state, strain, parameters, new_stress, new_state, tangent):  # type: ignore[no-untyped-def]
+    """Prager's law of a fibre; parameters E, G, k², ζ."""
+    E, G, k2, ζ = parameters
+    c, weight = np.array([E / 1.5, 2.0 * G, 2.0 * G]), np.array([1.5, 2.0, 2.0])
+    over = np.array([1.5, 1.0, 1.0])  # σ by its deviator
+    e = np.array([E, G, G]) * strain / over
+    n, dn = np.empty(3), np.empty((3, 3))
+    n0 = stress / over - state[:3]
+    new_state[:] = state
+    if _prager(n0, e, c, weight, ζ, k2, n, dn):
+        p = (n0 + e - n) / (c + ζ)
+        new_state[:3] = state[:3] + ζ * p
+        new_state[3] = state[3] + np.sqrt(k2) * np.sqrt((weight * p * p).sum())
+    new_stress[:] = over * (n + new_state[:3])
+    for i in range(3):
+        for j in range(3):
+            plastic = ((1.0 if i == j else 0.0) - dn[i, j]) / (c[i] + ζ)
+            tangent[i, j] = over[i] * (dn[i, j] + ζ * plastic) * (E / 1.5, G, G)[j]
+    return True
+
+
+@COMPILED
+def kinematic_3d(stress, state, strain, parameters, new_stress, new_state, tangent):  # type: ignore[no-untyped-def]
+    """Prager's law of six stresses; parameters E, G, k², ζ; the state is B11, B22, B33, b, B12, B13, B23."""
+    E, G, k2, ζ = parameters
+    weight, c, back = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0]), np.full(6, 2.0 * G), np.array([0, 1, 2, 4, 5, 6])
+    K = E * G / (3.0 * (3.0 * G - E))
+    e, deviator, B = np.empty(6), stress.copy(), np.empty(6)
+    mean, grown = (stress[0] + stress[1] + stress[2]) / 3.0, strain[0] + strain[1] + strain[2]
+    for i in range(6):
+        B[i] = state[back[i]]
+        e[i] = 2.0 * G * (strain[i] - grown / 3.0) if i < 3 else G * strain[i]
+        deviator[i] -= mean if i < 3 else 0.0
+    n, dn = np.empty(6), np.empty((6, 6))
+    n0 = deviator - B
+    new_state[:] = state
+    if _prager(n0, e, c, weight, ζ, k2, n, dn):
+        p = (n0 + e - n) / (2.0 * G + ζ)
+        for i in range(6):
+            B[i] += ζ * p[i]
+            new_state[back[i]] = B[i]
+        new_state[3] = state[3] + np.sqrt(k2) * np.sqrt((weight * p * p).sum())
+    for i in range(6):
+        new_stress[i] = n[i] + B[i] + (mean + K * grown if i < 3 else 0.0)
+    row = np.empty(6)
+    for i in range(6):
+        for j in range(6):
+            same = 1.0 if i == j else 0.0
+            row[j] = dn[i, j] + ζ * (same - dn[i, j]) / (2.0 * G + ζ)
+        average = (row[0] + row[1] + row[2]) / 3.0
+        for j in range(6):
+            tangent[i, j] = 2.0 * G * (row[j] - average) if j < 3 else G * row[j]
+            if i < 3 and j < 3:
+                tangent[i, j] += K
+    return True
+
+
+@COMPILED
+def drucker(stress, state, strain, parameters, new_stress, new_state, tangent):  # type: ignore[no-untyped-def]
+    """Ideal plasticity with √(σ² + 3 τ²) + α σ = k, flow normal to it; parameters E, G, k, α.
+
+    Backward Euler: σ = (σ_tr − α E μ)/(1 + E μ/q), τ = τ_tr/(1 + 3 G μ/q), q = √(σ² + 3 τ²), with unknowns μ/q and q.
+    """
+    E, G, k, α = parameters
+    trial = stress + np.array([E, G, G]) * strain
+    new_state[:] = state
+    q = np.sqrt(trial[0] ** 2 + 3.0 * (trial[1] ** 2 + trial[2] ** 2))
+    C = np.diag(np.array([E, G, G]))
+    if q + α * trial[0] <= k * (1.0 + 1e-12):
+        new_stress[:] = trial
+        tangent[:] = C
+        return True
+    x = np.array([trial[0], trial[1], trial[2], 0.0])  # stress and multiplier
+    J, r = np.zeros((4, 4)), np.empty(4)
+    for _iteration in range(60):
+        q = np.sqrt(x[0] ** 2 + 3.0 * (x[1] ** 2 + x[2] ** 2))
+        m = np.array([x[0] / q + α, 3.0 * x[1] / q, 3.0 * x[2] / q])
+        g = np.array([x[0], 3.0 * x[1], 3.0 * x[2]]) / q
+        r[:3] = (x[:3] - trial) / np.diag(C) + x[3] * m
+        r[3] = q + α * x[0] - k
+        for i in range(3):
+            for j in range(3):
+                J[i, j] = x[3] * ((1.0 if i == 0 else 3.0) * (1.0 if i == j else 0.0) - g[i] * g[j]) / q
+            J[i, i] += 1.0 / C[i, i]
+            J[i, 3] = J[3, i] = m[i]
+        step = np.linalg.solve(J, r)
+        x -= step
+        if np.abs(step[:3]).max() <= 1e-13 * k:
+            break
+    else:
+        return False
+    new_stress[:] = x[:3]
+    new_state[3] = state[3] + k * x[3]
+    inverse = np.linalg.inv(J)
+    for i in range(3):
+        for j in range(3):
+            tangent[i, j] = inverse[i, j]
+    return x[3] >= 0.0
