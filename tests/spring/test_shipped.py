@@ -30,7 +30,8 @@ FOLDED = {"double_cone": 0.012, "funnel": 0.03, "barrel": 0.015, "hourglass": 0.
 EARLY, TAPERED = 0.8, 0.5
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-NOT_PRESSED = {"torsion", "extension"}  # tests/spring/test_torsion.py, test_extension.py
+# tests/spring/test_torsion.py, test_extension.py, test_any_wire.py: the formulas here are of compressed round wire
+NOT_PRESSED = {"torsion", "extension", "ovate_valve", "die_spring"}
 SPRINGS = [file for file in sorted((EXAMPLES / "springs").glob("*.yaml")) if file.stem not in NOT_PRESSED]
 SHIPPED = [EXAMPLES / "ck15_presetting.yaml", *SPRINGS]
 

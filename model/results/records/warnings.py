@@ -261,12 +261,14 @@ MORE = {
 
 def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     """Errors by the requested accuracy of the numbers that it governs, by their names in Errors; of a set, at least
-    one that is noticed.
+    one that is noticed. None in torsion, whose errors of torque and rotation are not estimated.
 
     Args:
         setup: Setup of a run that estimates errors.
         result: Result with steps.
     """
+    if is_turned(setup, result.steps):
+        return {}
     asked, release = setup.limits.accuracy or 0.0, last_release(setup, result)
     found = {"force_N": asked * result.greatest_force}
     if release is not None and release.set > 0.0:
