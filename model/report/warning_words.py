@@ -33,6 +33,7 @@ KINDS = {
     "stress": "the stress exceeds the permissible one of the standard",
     "support": "no spring with these ends is supported so",
     "temperature": "the strength of the warm wire is unknown",
+    "limit": "a result is outside the limits of the case",
     "unknown error": "the error of the steps could not be estimated",
     "unstable": "states are unstable",
     "wall": "the coils are solid before the calculated block height is reached",

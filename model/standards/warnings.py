@@ -65,8 +65,9 @@ def _solid_coils(spring: Spring) -> Iterator[Warning]:
     t, distance, wire = coil_distances(spring)
     first = spring.bottom.end_turns + spring.bottom.transition_turns
     last = spring.turns - spring.top.end_turns - spring.top.transition_turns
-    solid = t[(t >= first) & (t + 1.0 <= last) & (distance < (1.0 + TOUCH) * wire)]
-    if len(solid) > 1:
+    body = (t >= first) & (t + 1.0 <= last)
+    solid = t[body & (distance < (1.0 + TOUCH) * wire)]
+    if 1 < len(solid) < np.count_nonzero(body):  # where all touch the spring is closely wound, to be pulled or turned
         pitch = float(spring.pitch(solid).min())
         yield Warning(
             "solid coils",

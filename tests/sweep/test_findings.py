@@ -36,7 +36,7 @@ def test_an_input_decides_only_beyond_chance():
     sure, interval = np.array([0.2, -0.9]), np.array([[-0.1, 0.5], [-0.95, -0.8]])
     words = ["pitch", "wire diameter"]
     assert findings.strongest("set", words, sure, interval) == (
-        "A greater wire diameter goes with a smaller set most clearly"
+        "A greater wire diameter comes with a smaller set most clearly"
     )
     unsure = findings.strongest("set", words, sure * [1.0, 0.1], interval)
     assert unsure == "No input moves the set more than chance would"
