@@ -27,11 +27,9 @@ class OvalSpec(Strict):
     height: Annotated[Length, Field(description="along the spring, mm")]
 
 
-class RectangleSpec(Strict):
+class RectangleSpec(OvalSpec):
     """A rectangle with rounded corners."""
 
-    width: Annotated[Length, Field(description="across the coil's axis, mm")]
-    height: Annotated[Length, Field(description="along the spring, mm")]
     corner: Annotated[Radius, Field(description="radius of the corners, mm; 0 leaves them sharp")] = 0.0
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from coilset.model.base.errors import InputError
 from coilset.model.design.file import Conditions, DesignFile, Limits
 from coilset.model.results.records.units import quantity, unit_of
-from coilset.model.results.records.working import asked
+from coilset.model.results.records.working import place_of
 
 GROUP = "such_that."  # before the names of conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
@@ -123,7 +123,7 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
 def _visit(data: dict[str, Any], names: Iterable[str]) -> None:
     """Let the case of these numbers of working states go there."""
     for name in names:
-        kind, value = asked(name)
+        kind, value = place_of(name)
         there = data.setdefault("working", {}) or {}
         values = there.setdefault("lengths" if kind == "length" else "forces", [])
         if value not in values:

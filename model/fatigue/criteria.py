@@ -19,7 +19,7 @@ def haigh(cycle: Cycle, sensitivity: float) -> np.ndarray:
     """Amplitude of fully reversed shear by the mean-stress sensitivity M (Schütz 1967), in von Mises' measure.
 
     τ̂ = √J₂(Ŝ) and τ̄ = √J₂(S̄), positive where it has the sense of the amplitude or the opposite one: a mean shear stress
-    has no sign that the material could know. The line has the slope −M up to τ̄ = τ̂ (R = 0) and −M/3 beyond it, as the
+    damages alike in both senses. The line has the slope −M up to τ̄ = τ̂ (R = 0) and −M/3 beyond it, as the
     FKM guideline draws it for R between 0 and 0.5, with no further bend:
 
         τ̄ ≤ τ̂:  τ̂ + M τ̄,     τ̄ > τ̂:  τ̂ (1 + M) (1 + M τ̄/(3 τ̂))/(1 + M/3).
@@ -76,8 +76,8 @@ def dang_van(cycle: Cycle, a: float) -> np.ndarray:
 def fatemi_socie(cycle: Cycle, k: float, yield_stress: float) -> np.ndarray:
     """τ̂ (1 + k σ_max/σ_y) on the plane of the greatest shear strain amplitude (Fatemi and Socie 1988), elastic.
 
-    Of the planes with the same amplitude the one with the greatest σ_max; compression does not heal (σ_max ≥ 0). An
-    amplitude of reversed torsion, whose planes carry no normal stress.
+    Of the planes with the same amplitude the one with the greatest σ_max; compression does not reduce damage
+    (σ_max ≥ 0). An amplitude of reversed torsion, whose planes carry no normal stress.
     """
     values, vectors = np.linalg.eigh(cycle.amplitude)
     shear = 0.5 * (values[..., 2] - values[..., 0])

@@ -4,34 +4,41 @@ The stress there is that of the run: it has the residual stress of coiling, pres
 """
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from coilset.model.base.warning import Warning
 from coilset.model.fatigue.cycle import Cycle, tensors
+from coilset.model.fatigue.strength import Strength
 from coilset.model.results.records.record import Result, Setup
-from coilset.model.results.records.working import WorkingState
+from coilset.model.results.records.working import Working, WorkingState
 from coilset.model.section import surface
 
 
-def between(result: Result) -> tuple[WorkingState, WorkingState] | None:
+def between(working: Working | None) -> tuple[WorkingState, WorkingState] | None:
     """The working states of the least and the greatest force; None with fewer than two."""
-    reached = [] if result.working is None else [one for one in result.working.reached if one.snapshot is not None]
+    reached = [] if working is None else [one for one in working.reached if one.snapshot is not None]
     if len(reached) < 2:
         return None
     return min(reached, key=lambda one: one.force), max(reached, key=lambda one: one.force)
 
 
-def usage(setup: Setup, result: Result) -> Iterator[tuple[str, np.ndarray, float]]:
+def usage(setup: Setup, result: Result) -> tuple[tuple[str, np.ndarray, float], ...]:
     """Name of each criterion, its amplitudes on the surface, shape (n, sections, angles), and what is endured, MPa."""
-    states = between(result)
-    if setup.strength is None or states is None:
-        return
+    return () if setup.strength is None or result.working is None else _usage(setup.strength, result.working)
+
+
+@lru_cache(maxsize=1)  # summary, warnings, data set and figures need it; a search over planes takes seconds
+def _usage(strength: Strength, working: Working) -> tuple[tuple[str, np.ndarray, float], ...]:
+    states = between(working)
+    if states is None:
+        return ()
     first, second = (
         tensors(one.snapshot.surface_state, one.snapshot.components) for one in states if one.snapshot is not None
     )
-    yield from setup.strength.loads(Cycle.between(first, second))
+    return tuple(strength.loads(Cycle.between(first, second)))
 
 
 def fatigue(setup: Setup, result: Result) -> tuple[dict[str, Any], ...]:
@@ -51,7 +58,7 @@ def fatigue_warnings(setup: Setup, result: Result) -> Iterator[Warning]:
     """Criteria by which the spring does not endure, or that there are no two working states between which it works."""
     if setup.strength is None or result.working is None:
         return
-    if between(result) is None:
+    if between(result.working) is None:
         message = "fatigue needs two working states that the finished spring can have; it has fewer"
         yield Warning("fatigue", "working", message)
     for entry in fatigue(setup, result):

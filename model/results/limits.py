@@ -12,7 +12,7 @@ from coilset.model.case import Case
 from coilset.model.case.limits import GRADE, About, AnyLimit
 from coilset.model.results.records.summary_entries import NUMBERS
 from coilset.model.results.records.units import quantity, without_unit
-from coilset.model.results.records.working import asked, is_working_number, names_of
+from coilset.model.results.records.working import is_working_number, names_of, place_of
 from coilset.model.standards import en13906, en15800
 from coilset.model.standards.cylinder import Cylinder
 
@@ -91,7 +91,10 @@ def _range(name: str, limit: AnyLimit, spring: Spring, shear_modulus: float, pla
     if isinstance(limit, About):
         nominal, source = limit.nominal, text
     elif is_force:
-        nominal, source = en13906.rate(shear_modulus, d, D, n) * (length - asked(name)[1]), f"{text}, about R (L0 − L)"
+        nominal, source = (
+            en13906.rate(shear_modulus, d, D, n) * (length - place_of(name)[1]),
+            f"{text}, about R (L0 − L)",
+        )
     else:
         nominal, source = length, f"{text}, about the drawn length"
     spread = (
@@ -127,12 +130,11 @@ def limit_warnings(entries: tuple[dict[str, Any], ...]) -> Iterator[Warning]:
             continue
         words, unit = quantity(entry["name"])
         bounds = f"{entry['low']:.6g} to {entry['high']:.6g} {unit} ({entry['source']})"
-        if entry["value"] is None:
-            message = f"the {words} must be {bounds}, but this run has none"
-        else:
-            beyond = entry["low"] if entry["value"] < entry["low"] else entry["high"]
-            off = f"outside by {-entry['margin']:.4g} {unit}"
-            message = f"the {words} is {entry['value']:.6g} {unit}, {off}; it must be {bounds}"
-            yield Warning("limit", entry["name"], message, entry["value"], beyond, unit)
+        value = entry["value"]
+        if value is None:
+            yield Warning("limit", entry["name"], f"the {words} must be {bounds}, but this run has none")
             continue
-        yield Warning("limit", entry["name"], message)
+        off = f"outside by {-entry['margin']:.4g} {unit}"
+        message = f"the {words} is {value:.6g} {unit}, {off}; it must be {bounds}"
+        beyond = entry["low"] if value < entry["low"] else entry["high"]
+        yield Warning("limit", entry["name"], message, value, beyond, unit)

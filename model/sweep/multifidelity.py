@@ -58,9 +58,9 @@ class ControlVariate:
         if len(rod) < FEWEST:
             raise ValueError(f"{len(rod)} rods are too few for an interval; {FEWEST} are needed")
         self.rod, self.uniform = rod, len(all_uniform)
-        slope = _slope(rod, uniform)
-        self._predicted = rod.mean() + slope * (uniform - uniform.mean())
-        self._all_predicted = np.sort(rod.mean() + slope * (all_uniform - uniform.mean()))
+        beta = slope(rod, uniform)
+        self._predicted = rod.mean() + beta * (uniform - uniform.mean())
+        self._all_predicted = np.sort(rod.mean() + beta * (all_uniform - uniform.mean()))
 
     def mean(self) -> Statistic:
         """Of the response."""
@@ -87,7 +87,7 @@ class ControlVariate:
 
     def _controlled(self, rod: np.ndarray, control: np.ndarray, mean: float, spread: float) -> Statistic:
         """Of the mean of `rod`, from its control, and from the mean and variance of the control of all cases."""
-        n, beta = len(rod), _slope(rod, control)
+        n, beta = len(rod), slope(rod, control)
         value = float(rod.mean() - beta * (control.mean() - mean))
         # two degrees of freedom are used up; an indicator that never changes still may by about one case in n
         residual = max(float(np.var(rod - beta * control, ddof=2)), 1.0 / (n + 1.0) ** 2 if _is_indicator(rod) else 0.0)
@@ -98,7 +98,7 @@ class ControlVariate:
         )
 
 
-def _slope(values: np.ndarray, control: np.ndarray) -> float:
+def slope(values: np.ndarray, control: np.ndarray) -> float:
     """Of the regression of values on their control; 0 if that is constant."""
     spread = float(np.var(control))
     return float(np.mean((values - values.mean()) * (control - control.mean()))) / spread if spread else 0.0

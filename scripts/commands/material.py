@@ -1,18 +1,17 @@
 """`coilset material`: draw a material's functions, drive one point through a program, fit constants to tests."""
 
-import os
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from coilset.model.base.errors import InputError, naming
 from coilset.scripts.commands.learning import relaxation, springs
+from coilset.scripts.commands.learning.files import files_to_write, folder_of, write_material, write_picture
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.startup import typer
-from coilset.scripts.terminal.target import OVERWRITE, folder_target, results_folder
+from coilset.scripts.terminal.target import OVERWRITE, folder_target
 
 if TYPE_CHECKING:  # commands load what they need
-    from matplotlib.figure import Figure
     from rich.table import Table
 
     from coilset.model.material.identification.cyclic import CyclicFit
@@ -45,11 +44,11 @@ def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     from coilset.scripts.terminal.console import Console
 
     law = library.load(material)
-    picture = _free(_folder(out, law.name), force, "functions.png")[0]
+    picture = files_to_write(folder_of(out, law.name), force, "functions.png")[0]
     console = Console()
     console.print(f"[bold]{law.name}[/]: {law.description}\nsource: {law.source}\nvalid: {law.validity.remark}")
     console.print(_constants(law))
-    _save(figures.material_functions(law), picture, console)
+    write_picture(figures.material_functions(law), picture, console)
 
 
 @app.command("test")
@@ -69,14 +68,14 @@ def run_program(
     announce_compiling()
     law, steps = library.load(material, spin=spin), programs.read(program)
     name = Path(program).stem
-    table, picture = _free(_folder(out, law.name), force, f"{name}.csv", f"{name}.png")
+    table, picture = files_to_write(folder_of(out, law.name), force, f"{name}.csv", f"{name}.png")
     console = Console()
     with naming(program):
         history = programs.run(law, steps)
     console.print(_ends(steps, history))
     make(table.parent)
     _write_csv(table, history)
-    _save(figures.program(law, steps, history), picture, console)
+    write_picture(figures.program(law, steps, history), picture, console)
 
 
 @app.command()
@@ -98,7 +97,7 @@ def certificate(
     from coilset.model.standards.wires.certificate import Certificate
     from coilset.scripts.terminal.console import Console
 
-    (file,) = _free(_folder(out, name), force, f"{name}.yaml")
+    (file,) = files_to_write(folder_of(out, name), force, f"{name}.yaml")
     stated = Certificate(strength, proof_stress, shear_modulus, poisson, elastic_limit)
     data = stated.material(name, source)
     make(file.parent)
@@ -145,7 +144,7 @@ def fit(
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
-    file, picture = _free(_folder(out, name), force, f"{name}.yaml", "fit.png")
+    file, picture = files_to_write(folder_of(out, name), force, f"{name}.yaml", "fit.png")
     tests = [experiments.read_test(path, engineering) for path in data]
     if back_stresses is None:
         result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
@@ -161,8 +160,8 @@ def fit(
         _say_what_is_told(result, console)
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} MPa")
-    _write_material(file, result.material(name), console)
-    _save(figures.fit(result, name), picture, console)
+    write_material(file, result.material(name), console)
+    write_picture(figures.fit(result, name), picture, console)
 
 
 def _say_what_is_told(fit: "CyclicFit", console: "Console") -> None:
@@ -202,7 +201,7 @@ def creep(
     ):
         if value not in known:
             raise InputError(f"'{value}' is none of {', '.join(known)}", option)
-    file, picture = _free(_folder(out, name), force, f"{name}.yaml", f"{name}.png")
+    file, picture = files_to_write(folder_of(out, name), force, f"{name}.yaml", f"{name}.png")
     error = POINT_ERROR if points and loss_error is None else loss_error
     tests = relaxation.read(data, points)
     result = fit_creep(library.load(material), tests, form, hardening, time_exponent, error)
@@ -219,41 +218,8 @@ def creep(
     source = "coilset material creep, " + ", ".join(Path(one).name for one in data)
     if time_exponent is not None:
         source += f", with p = {time_exponent:g} given"
-    _write_material(file, result.material(name, source), console)
-    _save(creep_figure(result), picture, console)
-
-
-def _folder(out: str | None, name: str) -> Path:
-    return results_folder(out, name, "material")
-
-
-def _free(folder: Path, force: bool, *names: str) -> list[Path]:
-    """Files that a command will write, none of which is there unless forced: found before it computes or writes any."""
-    from coilset.model.results.files.folder import refuse_to_replace
-
-    paths = [folder / name for name in names]
-    refuse_to_replace(paths, force)
-    return paths
-
-
-def _write_material(file: Path, content: dict[str, Any], console: "Console") -> None:
-    import yaml
-
-    from coilset.model.results.files.folder import make, whole
-
-    make(file.parent)
-    with whole(file) as path:
-        path.write_text(yaml.safe_dump(content, sort_keys=False, allow_unicode=True), encoding="utf-8")
-    console.say(f"material file in {file}")
-
-
-def _save(figure: "Figure", path: Path, console: "Console") -> None:
-    from coilset.model.figures.png import save
-    from coilset.model.results.files.folder import make
-
-    make(path.parent)
-    save(figure, path)
-    console.say(f"picture in {path.parent}{os.sep}{path.name}")
+    write_material(file, result.material(name, source), console)
+    write_picture(creep_figure(result), picture, console)
 
 
 def _write_csv(path: Path, history: "History") -> None:

@@ -1,6 +1,6 @@
 """The finished spring at its working lengths: what summary.json, sweeps and limits name after them.
 
-Entries end with the length or force that was asked for: `force_at_37_N` is the force at 37 mm, `length_at_250_mm` the
+Entries end with the given length or force: `force_at_37_N` is the force at 37 mm, `length_at_250_mm` the
 length under 250 N.
 """
 
@@ -35,7 +35,7 @@ class WorkingState:
     """The spring at a working length or force.
 
     Attributes:
-        kind, value: what was asked for, `length` in mm or `force` in N.
+        kind, value: what the case gives, `length` in mm or `force` in N.
         reason: why the spring cannot be there; empty if it is.
         length, force, rate: of the spring there, mm, N and N/mm; NaN where it is not.
         error: estimated size of the error of the force at a length, N, or of the length under a force, mm; None where
@@ -59,7 +59,7 @@ class WorkingState:
         return f"{self.value:g} {'mm' if self.kind == 'length' else 'N'}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Working:
     """All working states of a spring.
 
@@ -117,7 +117,7 @@ def quantities_at(kind: str) -> list[str]:
     return ["length"] if kind == "force" else [name for name in QUANTITIES if name != "length"]
 
 
-def asked(name: str) -> tuple[Literal["length", "force"], float]:
+def place_of(name: str) -> tuple[Literal["length", "force"], float]:
     """What a number of a working state is at: a length, mm, or for a `length_at_…` a force, N."""
     found = NUMBER.fullmatch(name)
     assert found is not None

@@ -18,7 +18,7 @@ from coilset.model.case import Case, check
 from coilset.model.results.limits import Limit, case_limits
 from coilset.model.results.records.units import quantity
 from coilset.model.standards.wires.law import case_elastic, case_law
-from coilset.model.sweep.multifidelity import LEVEL, ControlVariate
+from coilset.model.sweep.multifidelity import LEVEL, ControlVariate, slope
 from coilset.model.sweep.plan import Plan
 
 ENOUGH = 8  # cases
@@ -128,7 +128,7 @@ def _controlled(
     cp, cpk = _indices(limit, mean.value, s)
     cps = [_indices(limit, mean.value, one)[0] for one in deviations]
     corners = [_indices(limit, m, one)[1] for m in (mean.low, mean.high) for one in deviations]
-    predicted = rod.mean() + _slope(rod, uniform) * (all_uniform - uniform.mean())
+    predicted = rod.mean() + slope(rod, uniform) * (all_uniform - uniform.mean())
     return Capability(
         limit,
         predicted,
@@ -143,15 +143,10 @@ def _controlled(
 
 
 def _centred(rod: np.ndarray, uniform: np.ndarray, all_uniform: np.ndarray) -> Iterator[tuple[np.ndarray, float]]:
-    slope = _slope(rod, uniform)
-    middle = float(slope * all_uniform.mean())
-    yield slope * uniform, middle
-    yield slope * all_uniform, middle
-
-
-def _slope(values: np.ndarray, control: np.ndarray) -> float:
-    spread = float(np.var(control))
-    return float(np.mean((values - values.mean()) * (control - control.mean()))) / spread if spread else 0.0
+    beta = slope(rod, uniform)
+    middle = float(beta * all_uniform.mean())
+    yield beta * uniform, middle
+    yield beta * all_uniform, middle
 
 
 def _indices(limit: Limit, mean: float, s: float) -> tuple[float, float]:

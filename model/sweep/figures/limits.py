@@ -14,8 +14,8 @@ def histogram(found: Capability) -> Panel:
     trace = {
         "type": "scatter",
         "mode": "lines",
-        "x": np.repeat(edges, 2)[1:-1],
-        "y": np.repeat(count, 2).astype(float),
+        "x": np.repeat(edges, 2),
+        "y": np.pad(np.repeat(count, 2).astype(float), 1),
         "line": {"color": COLOURS[0], "width": 1.5},
         "showlegend": False,
     }

@@ -18,10 +18,9 @@ def read(paths: Sequence[str], points: bool) -> "tuple[Readings, ...]":
     Raises:
         InputError: a file is wrong.
     """
-    from math import pi
-
     from coilset.model.case import read_case
     from coilset.model.material.identification.relaxation_tests import read_relaxation
+    from coilset.model.standards import en13906
     from coilset.model.uniform.equivalent import coil
 
     found = []
@@ -29,7 +28,7 @@ def read(paths: Sequence[str], points: bool) -> "tuple[Readings, ...]":
         per_force = None
         if case is not None:
             d, D, _, _ = coil(read_case(case).spring.build())
-            per_force = float(8.0 * D / (pi * d**3))
+            per_force = float(en13906.stress(1.0, d, D))
         found.append(read_relaxation(path, points, per_force))
     return tuple(found)
 

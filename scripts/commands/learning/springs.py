@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from click import Command, Context
 
 from coilset.model.base.errors import InputError
+from coilset.scripts.commands.learning.files import files_to_write, folder_of, write_material, write_picture
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target
@@ -51,11 +52,10 @@ def fit_springs(
     from coilset.model.calibration.fit import fit_springs as fit
     from coilset.model.calibration.model import TESTER, Errors
     from coilset.model.calibration.next_press import next_press, words
-    from coilset.scripts.commands.material import _folder, _free, _save, _write_material
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
-    file, picture = _free(_folder(out, name), force, f"{name}.yaml", "fit.png")
+    file, picture = files_to_write(folder_of(out, name), force, f"{name}.yaml", "fit.png")
     pressings = _read(data)
     console = Console()
     found = fit(pressings, law, _known(known), tester, Errors(force_error, travel_error))
@@ -76,8 +76,8 @@ def fit_springs(
         console.warn(found.misfit)
     for sentence in words(next_press(found), found.doubtful):
         console.print(sentence, soft_wrap=True)
-    _write_material(file, found.material(name), console)
-    _save(figure(found), picture, console)
+    write_material(file, found.material(name), console)
+    write_picture(figure(found), picture, console)
 
 
 def _known(texts: list[str]) -> dict[str, float]:

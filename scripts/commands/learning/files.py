@@ -1,0 +1,52 @@
+"""Files that the commands of `coilset material` write: material files and pictures in a folder of results."""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from coilset.scripts.terminal.target import results_folder
+
+if TYPE_CHECKING:  # commands load what they need
+    from matplotlib.figure import Figure
+
+    from coilset.scripts.terminal.console import Console
+
+
+def folder_of(out: str | None, name: str) -> Path:
+    """The folder of a command's results: `out`, by default results/material/NAME."""
+    return results_folder(out, name, "material")
+
+
+def files_to_write(folder: Path, force: bool, *names: str) -> list[Path]:
+    """Files that a command will write, none of which is there unless forced: found before it computes or writes any.
+
+    Raises:
+        InputError: one is there.
+    """
+    from coilset.model.results.files.folder import refuse_to_replace
+
+    paths = [folder / name for name in names]
+    refuse_to_replace(paths, force)
+    return paths
+
+
+def write_material(file: Path, content: dict[str, Any], console: "Console") -> None:
+    """Write a material file."""
+    import yaml
+
+    from coilset.model.results.files.folder import make, whole
+
+    make(file.parent)
+    with whole(file) as path:
+        path.write_text(yaml.safe_dump(content, sort_keys=False, allow_unicode=True), encoding="utf-8")
+    console.say(f"material file in {file}")
+
+
+def write_picture(figure: "Figure", path: Path, console: "Console") -> None:
+    """Write a figure as PNG."""
+    from coilset.model.figures.png import save
+    from coilset.model.results.files.folder import make
+
+    make(path.parent)
+    save(figure, path)
+    console.say(f"picture in {path.parent}{os.sep}{path.name}")
