@@ -47,7 +47,7 @@ def characteristic(run: Run) -> Panel:
     layout = upright(block, f"block, {summary['block_height_mm']:.4g} mm high")
     if greatest < 0.0:
         layout = {"annotations": []}
-    if set_mm:
+    if set_mm and not opened:  # an extension spring sets in its initial tension first
         layout["annotations"] += _arrow(set_mm)
     return Panel(
         "characteristic",
