@@ -162,7 +162,8 @@ def place(tmp_path, monkeypatch):
         (everyday, "timed"),
         (warm, "warm"),
         (report, "open_run"),
-        (material, "_save"),
+        (material, "write_material"),
+        (material, "write_picture"),
         (material, "_write_csv"),
     ):
         monkeypatch.setattr(module, name, reach)
