@@ -1,6 +1,6 @@
 """The geometry of a spring as functions of the turn."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,8 +12,10 @@ from coilset.meshes.springs.block import block_height
 from coilset.meshes.springs.ends import OPEN, EndCoils
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.stations import ElementsPerTurn, stations
+from coilset.model.base.errors import InputError
 
 INTERVALS_PER_TURN = 64
+SAME = 1e-9  # relative difference of a height from a bound that is rounding
 STRAIGHT = 1e-9  # |c′ × c″| over |c′|² below which a wire has no normal
 
 
@@ -223,6 +225,25 @@ class Spring:
         rest = np.abs(self.height(along[i - 1 : i + 1]) - level) - 0.5 * self.wire(along[i - 1 : i + 1])
         last = along[i - 1] - rest[0] * (along[i] - along[i - 1]) / (rest[1] - rest[0])
         return float(abs(last - along[0]))
+
+    def at_height(self, height: float) -> "Spring":
+        """The spring between seats at a height, mm: every pitch p becomes p − λ (p − d), with one λ for all turns.
+
+        Coils that lie on each other remain so, and the wire keeps its radius, which in truth grows a little.
+
+        Raises:
+            InputError: a height that is not between block and the free length.
+        """
+        low, high = self.block_height, self.free_length
+        if not low * (1.0 - SAME) <= height <= high * (1.0 + SAME):
+            raise InputError(
+                f"{height:g} mm is impossible; must be between the block height {low:.5g} and the free length "
+                f"{high:.5g} mm",
+                "height",
+            )
+        closing = self.height - self.wire.antiderivative()  # play of all turns below a turn
+        solid = replace(self, height=self.height - closing).free_length
+        return replace(self, height=self.height - closing * ((high - height) / (high - solid)))
 
     def stations(self, elements_per_turn: ElementsPerTurn = 16, sagitta: float | None = None) -> np.ndarray:
         """Increasing turns of the nodes of a line mesh, see `coilset.meshes.springs.stations.stations`."""
