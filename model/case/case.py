@@ -20,6 +20,7 @@ from coilset.model.case.limits import AnyLimit
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
+from coilset.model.case.sheet import SheetSpec
 from coilset.model.case.working import WorkingSpec
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
@@ -295,6 +296,10 @@ class Case(Strict):
     force_line: Annotated[
         ForceLineSpec | None,
         Field(description="planes that the force line crosses, and a damper; left out: seats.csv has no such numbers"),
+    ] = None
+
+    sheet: Annotated[
+        SheetSpec | None, Field(description="head of the data sheet by `coilset sheet --out sheet.pdf`")
     ] = None
 
     @model_validator(mode="before")
