@@ -206,7 +206,9 @@ def sheet(
     if wires:
         sheets.list_wires(wire)
     else:
-        sheets.sheet(case, results, wire, length, grade, surface, dynamic, out, language.value, force, settings, pictures)
+        sheets.sheet(
+            case, results, wire, length, grade, surface, dynamic, out, language.value, force, settings, pictures
+        )
 
 
 @app.command()

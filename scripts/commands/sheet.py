@@ -91,7 +91,7 @@ def sheet(
         from coilset.model.report.document.content import document
         from coilset.model.report.document.output import write
 
-        name = os.fspath(results) if results else ""
+        name = Path(results).resolve().name if results else ""
         content = document(case, spring, made, name, warnings, Words(language))
         for file in files:
             write(content, file)

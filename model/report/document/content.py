@@ -16,12 +16,18 @@ from coilset.model.report.document.view import Drawing, Level, view
 from coilset.model.report.document.words import Words
 from coilset.model.results.limits import Limit, case_limits
 from coilset.model.results.records.units import quantity
-from coilset.model.results.records.working import number_name
+from coilset.model.results.records.working import is_working_number, number_name
 from coilset.model.standards import en15800
 from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet
 
 MOST_LEVELS = 6  # lengths on the drawing; the table has all
+DRAWN = {"free_length_after_mm": "free length L0", "rate_30_70_after_N_per_mm": "rate R"}
+FINISHED = {
+    "set_mm": ("set", "mm"),
+    "residual_shear_inside_MPa": ("residual shear stress, inside", "MPa"),
+    "force_max_N": ("greatest force of the run", "N"),
+}
 POINTS = 200  # of the formula's curve
 
 
@@ -83,6 +89,7 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
     tables += [(words(title), [_line(row, words) for row in rows if not _empty(row)]) for title, rows in parts]
     summary = sheet.found.summary if sheet.found else {}
     tables += [
+        (words("Finished spring"), list(_finished(summary, words))),
         (words("Limits"), list(_limit_lines(limits.values(), summary, words))),
         (words("Fatigue of the run"), list(_fatigue(summary, words))),
     ]
@@ -123,11 +130,27 @@ def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Itera
     for limit in limits:
         name, unit = quantity(limit.name)
         judged = verdicts.get(limit.name)
-        value, result = "", "not checked"
-        if judged is not None:
-            value, result = words.number(judged["value"]), "met" if judged["met"] else "not met"
+        value, mark = ("", "") if judged is None else (words.number(judged["value"]), " ✓" if judged["met"] else " ✗")
         between = f"{words.number(limit.low)} … {words.number(limit.high)}"
-        yield Line(words(f"{name} mm" if "_at_" in limit.name else name), between, value, f"{unit} {words(result)}")
+        name = DRAWN.get(limit.name) or (f"{name} mm" if is_working_number(limit.name) else name)
+        yield Line(words(name), between, value, unit + mark)
+
+
+def _finished(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    """What only a run has: the set, residual stress, and the true stress at the working lengths with its safety."""
+    number = words.number
+    for name, (label, unit) in FINISHED.items():
+        if summary.get(name) is not None:
+            yield Line(words(label), "", number(summary[name]), unit)
+    for state in summary.get("working") or ():
+        if "length_wanted" in state and not state["reason"]:
+            place = f"{state['length_wanted']:g} mm"
+            for name, label, unit in (
+                ("shear_surface_MPa", "greatest shear stress at", "MPa"),
+                ("safety", "safety against the allowable at", ""),
+            ):
+                if state.get(name) is not None:
+                    yield Line(words(f"{label} {place}"), "", number(state[name]), unit)
 
 
 def _fatigue(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
@@ -163,7 +186,11 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
     if not sheet.pulled and not sheet.turns_to:
         levels.append(Level(sheet.shortest, f"Lc = {number(sheet.shortest)}"))
     mean = about(s.D, "", given.coil_diameter if given else None)
-    widths = [(s.D - width, f"Di = {number(s.D - width)}"), (s.D, f"D = {mean}"), (s.D + width, f"De = {number(s.D + width)}")]
+    widths = [
+        (s.D - width, f"Di = {number(s.D - width)}"),
+        (s.D, f"D = {mean}"),
+        (s.D + width, f"De = {number(s.D + width)}"),
+    ]
     tolerance = sheet.tolerance_of_wire
     wire = number(s.d) if s.wire is None else f"{number(s.wire.width)} × {number(s.d)}"
     return view(shown, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""))
@@ -201,7 +228,9 @@ def _characteristic(sheet: Sheet, limits: Mapping[str, Limit]) -> Panel:
     if points:
         marker: Trace = {"size": 8, "symbol": "square", "color": "#009e73"}
         x, y = np.array(points).T
-        traces.append({"type": "scatter", "mode": "markers", "x": x, "y": y, "marker": marker, "name": "working points"})
+        traces.append(
+            {"type": "scatter", "mode": "markers", "x": x, "y": y, "marker": marker, "name": "working points"}
+        )
     layout = {"xaxis": axis("travel, mm"), "yaxis": axis("force, N", rangemode="tozero")}
     return Panel("force", "Force over travel", "Force over travel", traces, layout)
 
@@ -222,7 +251,5 @@ def _last_way(heights: np.ndarray, forces: np.ndarray) -> tuple[np.ndarray, np.n
 def _translated(panel: Panel, words: Words) -> Panel:
     """A panel with its title, legend and axes in another language."""
     traces = [trace | ({"name": words(trace["name"])} if "name" in trace else {}) for trace in panel.traces]
-    axes = {
-        name: entry | {"title": {"text": words(entry["title"]["text"])}} for name, entry in panel.layout.items()
-    }
+    axes = {name: entry | {"title": {"text": words(entry["title"]["text"])}} for name, entry in panel.layout.items()}
     return replace(panel, title=words(panel.title), traces=traces, layout=axes)

@@ -46,7 +46,8 @@ def _html(made: Document) -> bytes:
     title = escape(" ".join([made.title, *(value for _, value in made.head if value)]))
     drawn = "\n".join(_svg(figure, f"page{number}") for number, figure in enumerate(pages(made)))
     head = f'<meta charset="utf-8"><title>{title}</title><style>{style}</style>'
-    return f'<!DOCTYPE html>\n<html lang="{made.words.language}"><head>{head}</head>\n<body>{drawn}</body></html>\n'.encode()
+    page = f"<head>{head}</head>\n<body>{drawn}</body>"
+    return f'<!DOCTYPE html>\n<html lang="{made.words.language}">{page}</html>\n'.encode()
 
 
 def _svg(figure: Figure, salt: str) -> str:

@@ -33,10 +33,10 @@ def pages(made: Document) -> list[Figure]:
         _numbers(axes, made)
         rest = _columns(axes, list(_items(made)), bottom - 6.0, made)
         second, axes = _page(made, 2)
-        top = HEIGHT - MARGIN - 8.0
+        top = HEIGHT - MARGIN - 6.0
         axes.text(MARGIN, top + 3.0, f"{made.title} {dict(made.head).get(made.words('part'), '')}".strip(), fontsize=9)
         if made.panels:
-            top = _diagrams(second, made, top - 2.0)
+            top = _diagrams(second, made, top, bool(rest))
         rest = _columns(axes, rest, top - 6.0, made)
         _remarks(axes, made)
     return [first, second]
@@ -58,10 +58,10 @@ def _head(axes: Axes, made: Document) -> None:
     top, wide = HEIGHT - MARGIN, WIDTH - 2 * MARGIN
     axes.text(MARGIN, top - 4.0, made.title, fontsize=15, va="center", weight="bold")
     axes.text(MARGIN, top - 11.0, made.basis, fontsize=7.5, va="center")
-    shares = (0.0, 0.38, 0.66, 1.0, 0.0, 0.38, 0.66)  # of the width, two rows of cells
     for k, (name, value) in enumerate(made.head):
         row, place = divmod(k, 3)
-        left, right = MARGIN + wide * shares[place], MARGIN + wide * shares[place + 1]
+        cells = min(len(made.head) - 3 * row, 3)
+        left, right = (MARGIN + wide * share / cells for share in (place, place + 1))
         y = top - 16.0 - 11.0 * row
         axes.plot([left, right, right, left, left], [y, y, y - 11.0, y - 11.0, y], color="0.3", lw=0.6)
         axes.text(left + 1.5, y - 3.0, name, fontsize=5.8, color="0.35", va="center")
@@ -131,13 +131,14 @@ def _row(axes: Axes, left: float, y: float, title: str, line: Line | None, made:
     axes.plot([left, left + COLUMN], [y - 0.9] * 2, color="0.85", lw=0.3)
 
 
-def _diagrams(figure: Figure, made: Document, top: float) -> float:
-    """The diagrams side by side; returns the level that they end at."""
-    high, wide = 78.0, (WIDTH - 2 * MARGIN) / max(len(made.panels), 2)
+def _diagrams(figure: Figure, made: Document, top: float, beside: bool) -> float:
+    """The diagrams beside each other, or below each other on a page of their own; returns the level they end at."""
+    columns = len(made.panels) if beside else 1
+    high, wide = 80.0 if beside else 115.0, (WIDTH - 2 * MARGIN) / columns
     for k, panel in enumerate(made.panels):
-        left = MARGIN + k * wide + 13.0
-        place = (left / WIDTH, (top - high + 12.0) / HEIGHT, (wide - 16.0) / WIDTH, (high - 20.0) / HEIGHT)
-        axes = figure.add_axes(place)
+        row, column = divmod(k, columns)
+        left, low = MARGIN + column * wide + 13.0, top - (row + 1) * high + 12.0
+        axes = figure.add_axes((left / WIDTH, low / HEIGHT, (wide - 18.0) / WIDTH, (high - 20.0) / HEIGHT))
         draw(axes, panel)
         axes.set_title(panel.title, fontsize=8.5)
         axes.tick_params(labelsize=6.5)
@@ -147,7 +148,7 @@ def _diagrams(figure: Figure, made: Document, top: float) -> float:
         for name in (axes.xaxis, axes.yaxis):
             if made.words.language == "de":
                 name.set_major_formatter(lambda value, _: made.words.number(value, 6))
-    return top - high
+    return top - high * -(-len(made.panels) // columns)
 
 
 def _remarks(axes: Axes, made: Document) -> None:

@@ -108,7 +108,9 @@ def _levels(made: Drawing, reach: float, levels: Sequence[Level]) -> None:
     for row, level in enumerate(ordered):
         x, text_y = reach + (5.0 + 5.0 * row) * u, max(level.length, below + ROW * u)
         below = text_y
-        made.line((reach + 1.0 * u, level.length), (out, level.length), (out + 4.0 * u, text_y), (out + 6.0 * u, text_y))
+        made.line(
+            (reach + 1.0 * u, level.length), (out, level.length), (out + 4.0 * u, text_y), (out + 6.0 * u, text_y)
+        )
         made.arrow((x, 0.0), (x, level.length))
         made.texts.append(Text(level.text, out + 7.0 * u, text_y - 0.4 * LETTERS * u))
 
