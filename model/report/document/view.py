@@ -45,7 +45,7 @@ class Drawing:
         """As on a drawing, such as 2:1."""
         return f"1:{self.unit:g}" if self.unit >= 1.0 else f"{1.0 / self.unit:g}:1"
 
-    def line(self, *points: Sequence[float], layer: Layer = "DIMENSION") -> None:
+    def line(self, *points: Sequence[float] | np.ndarray, layer: Layer = "DIMENSION") -> None:
         """A line through points."""
         self.lines.append((np.array(points, dtype=float), layer))
 
