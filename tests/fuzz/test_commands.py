@@ -36,7 +36,7 @@ COMMANDS = {  # a right line each, and the options that it takes besides
         "there",
     ],
     "slice case.yaml": ["--overwrite", "--section", "oval:4:5", "--across", "3", "--no-pictures", "--out", "there"],
-    "solid case.yaml": ["--overwrite", "--turns", "2", "--across", "1", "--layers", "9", "--no-pictures", "--out", "there"],
+    "solid case.yaml": ["--overwrite", "--turns", "2", "--across", "1", "--layers", "9", "--out", "there"],
     "mesh case.yaml --no-pictures": ["--overwrite", "--write", "wire.vtu", "--out", "there"],
     "sheet case.yaml --no-pictures": [
         "--wire",
