@@ -10,8 +10,8 @@ for the increments x of the step, with f the internal forces and those of contac
 is the equilibrium of a static step that the inertia resists with the forces c M (x − x₀) + αf/(1 − αf) f₀. All that
 statics has (yield, contact, friction, large rotations) is therefore as it is there.
 
-M is that of the last state: it changes with the rotations of the sections only, so that gyroscopic moments, of the order
-of the wire's over the coil's radius squared, are left out.
+M is that of the last state: it changes with the rotations of the sections only. Gyroscopic moments, of the order of the
+wire's over the coil's radius squared, are left out.
 """
 
 from collections.abc import Callable
