@@ -89,7 +89,12 @@ class Spring:
     @cached_property
     def _along_wire(self) -> np.ndarray:
         """The breaks, and those of hooks and arms."""
-        return self.breaks if self.tails == (None, None) else np.unique(np.concatenate([self.breaks, self.corners]))
+        return np.unique(np.concatenate([self.breaks, self.corners])) if self.has_tails else self.breaks
+
+    @property
+    def has_tails(self) -> bool:
+        """Whether hooks or arms go on beyond the coil."""
+        return self.tails != (None, None)
 
     @cached_property
     def _speeds(self) -> tuple[float, float]:
@@ -116,7 +121,7 @@ class Spring:
     def _with_tails(self, turn: np.ndarray | float, order: int, of_coil: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         """A derivative of the centre line by the turn: `of_coil`, and that of hooks or arms beyond it."""
         t = np.asarray(turn, dtype=float)
-        if self.tails == (None, None):
+        if not self.has_tails:
             return of_coil(t)
         found = of_coil(np.clip(t, 0.0, self.turns))
         for tail, speed, side, beyond in zip(self.tails, self._speeds, (-1.0, 1.0), (-t, t - self.turns), strict=True):

@@ -204,6 +204,7 @@ class Analysis:
         outcome = self.continuation.attempt(self.control.to_force(0.0))
         if not outcome.converged:
             raise SolveError(f"the wound coils find no equilibrium without load: {outcome.reason}")
+        self.control.begin_here()
         self.program.begin(0)
 
     def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:

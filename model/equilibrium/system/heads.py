@@ -12,6 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from coilset.model.base.agreement import sum_of_ranks
+from coilset.model.body.state import Where
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
 from coilset.model.equilibrium.system.layout import SEATS, LineLayout
 from coilset.model.equilibrium.system.load import Load
@@ -86,7 +87,11 @@ class Heads:
             seats = system.state["seats"]
             start = np.concatenate([np.pad(point, (0, 3)) for point in self._points])
             seats.trial[:] = seats.equilibrium[:] = start
-        self._start = self._level("equilibrium")
+        self._start = system.state.add("free_level", np.array([self._level("equilibrium")]), Where.SHARED)
+
+    def begin_here(self) -> None:
+        """Count the height from the last equilibrium on, as that of the free spring."""
+        self._start.trial[0] = self._start.equilibrium[0] = self._level("equilibrium")
 
     # ---- loads -----------------------------------------------------------------------------------------------------
 
@@ -154,12 +159,12 @@ class Heads:
     @property
     def height(self) -> float:
         """At the last equilibrium, mm."""
-        return self.free_length + (self._level("equilibrium") - self._start)
+        return self.free_length + float(self._level("equilibrium") - self._start.equilibrium[0])
 
     @property
     def trial_height(self) -> float:
         """In the trial state, mm; collective."""
-        return self.free_length + (self._level("trial") - self._start)
+        return self.free_length + float(self._level("trial") - self._start.equilibrium[0])
 
     @property
     def force(self) -> float:
