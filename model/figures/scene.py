@@ -80,7 +80,12 @@ def springs(path: str | Path, run: Run) -> None:
     middle = aside + 0.5 * view.column * (len(snapshots) - 1)
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, view.height))
     plotter.set_background("white")
+    arbor = run.case.get("contact", {}).get("arbor")
     for place, number in enumerate(snapshots):
+        if arbor:
+            foot = (place * view.column, 0.0, 0.5 * (low + high))
+            rod = pv.Cylinder(center=foot, direction=(0, 0, 1), radius=0.5 * arbor, height=1.1 * (high - low))
+            plotter.add_mesh(rod, color="lightgrey", smooth_shading=True, split_sharp_edges=True)
         places, stress = closed(*(one[None] for one in wires[place]))
         mesh = pv.StructuredGrid(*np.moveaxis(places[0] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
         mesh[name] = stress[0].ravel(order="F")
