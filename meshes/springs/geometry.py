@@ -81,7 +81,7 @@ class Spring:
 
     @cached_property
     def breaks(self) -> np.ndarray:
-        """Turns between which every function of the coil is a single polynomial, at least `INTERVALS_PER_TURN` per turn."""
+        """Turns between which functions of the coil are single polynomials, at least `INTERVALS_PER_TURN` per turn."""
         even = np.linspace(0.0, self.turns, int(np.ceil(INTERVALS_PER_TURN * self.turns)) + 1)
         t = np.unique(np.concatenate([even, self.radius.x, self.height.x, self.wire.x]))
         return t[np.concatenate([[True], np.diff(t) > 1e-9])]
@@ -106,7 +106,8 @@ class Spring:
     def corners(self) -> np.ndarray:
         """Turns where the coil or a piece of a hook or arm ends."""
         bottom, top = (
-            np.zeros(1) if tail is None else tail.marks / speed for tail, speed in zip(self.tails, self._speeds, strict=True)
+            np.zeros(1) if tail is None else tail.marks / speed
+            for tail, speed in zip(self.tails, self._speeds, strict=True)
         )
         return np.concatenate([-bottom[::-1], self.turns + top])
 
@@ -118,7 +119,9 @@ class Spring:
         )
         return -bottom, self.turns + top
 
-    def _with_tails(self, turn: np.ndarray | float, order: int, of_coil: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    def _with_tails(
+        self, turn: np.ndarray | float, order: int, of_coil: Callable[[np.ndarray], np.ndarray]
+    ) -> np.ndarray:
         """A derivative of the centre line by the turn: `of_coil`, and that of hooks or arms beyond it."""
         t = np.asarray(turn, dtype=float)
         if not self.has_tails:
@@ -179,7 +182,9 @@ class Spring:
         def of_coil(t: np.ndarray) -> np.ndarray:
             r, dr, dθ = self.radius(t), self.slope(t), self.hand * 2 * np.pi
             ddr, dddr = self.slope.derivative()(t), self.slope.derivative(2)(t)
-            return _in_plane(self.angle(t), dddr - 3 * dr * dθ**2, 3 * ddr * dθ - r * dθ**3, self._pitch.derivative(2)(t))
+            return _in_plane(
+                self.angle(t), dddr - 3 * dr * dθ**2, 3 * ddr * dθ - r * dθ**3, self._pitch.derivative(2)(t)
+            )
 
         return self._with_tails(turn, 3, of_coil)
 
@@ -254,7 +259,9 @@ class Spring:
         ends = [self.centre_line(t)[2] for t in self.held]
         insides = [
             end + side * 0.5 * float(self.wire_diameter(t)) if tail is not None and tail.pulled else plane
-            for end, side, t, tail, plane in zip(ends, (1.0, -1.0), self.held, self.tails, (0.0, self.body_length), strict=True)
+            for end, side, t, tail, plane in zip(
+                ends, (1.0, -1.0), self.held, self.tails, (0.0, self.body_length), strict=True
+            )
         ]
         return float(insides[1] - insides[0])
 

@@ -15,6 +15,7 @@ from coilset.model.section.surface import Inside
 
 STRAIGHT = 0.25  # of the coil's curvature: below it a piece of a hook or arm is straight
 
+
 def inside(run: Run) -> Inside:
     """Position of the inside of the coil on the surface."""
     return Inside.of(bool(run.data["curvature"].values.any()), hand(run))
@@ -196,7 +197,10 @@ def section_points(run: Run, snapshot: int) -> np.ndarray:
     line = CubicSpline(turn, run.data["position"].values[snapshot], axis=0)
     centre, *across = _directions(line, at.ravel(), coil_turns(run))
     off = _off_normal(line, at.ravel(), at.ravel(), across, coil_turns(run))[:, None]
-    inwards, binormal = np.cos(off) * across[0] + np.sin(off) * across[1], np.cos(off) * across[1] - np.sin(off) * across[0]
+    inwards, binormal = (
+        np.cos(off) * across[0] + np.sin(off) * across[1],
+        np.cos(off) * across[1] - np.sin(off) * across[0],
+    )
     centre, inwards, binormal = (values.reshape(*at.shape, 1, 3) for values in (centre, inwards, binormal))
     y, z = (run.data[name].values[..., None] for name in "yz")
     turned = np.cos(inside(run).angle)

@@ -1,5 +1,7 @@
 """Hooks and arms: their geometry, F0 + R s with hooks, bending in a loop and of arms as a curved beam, the set."""
 
+import itertools
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -31,7 +33,8 @@ def solved(spring, loading, **entries):
 
 @pytest.mark.parametrize("hand", ["right", "left"])
 @pytest.mark.parametrize(
-    "tails", [both("hooks", shape=s) for s in ("german", "english", "side")] + [both("arms", direction="radial", length=20.0)]
+    "tails",
+    [both("hooks", shape=s) for s in ("german", "english", "side")] + [both("arms", direction="radial", length=20.0)],
 )
 def test_the_wire_goes_on_smoothly(tails, hand):
     """Derivatives by differences, the length by chords, and one tangent where pieces meet."""
@@ -39,7 +42,7 @@ def test_the_wire_goes_on_smoothly(tails, hand):
     first, last = spring.corners[[0, -1]]
     t, h = np.linspace(first + 0.011, last - 0.011, 40), 1e-5
     lines = spring.centre_line, spring.velocity, spring.acceleration, spring.jerk
-    for line, slope in zip(lines, lines[1:], strict=False):
+    for line, slope in itertools.pairwise(lines):
         differs = (line(t + h) - line(t - h)) / (2 * h) - slope(t)
         assert np.abs(differs).max() < 1e-6 * np.abs(slope(t)).max()
     np.testing.assert_allclose(spring.tangent(spring.corners - 1e-9), spring.tangent(spring.corners + 1e-9), atol=1e-6)
@@ -123,7 +126,9 @@ def test_the_rate_with_arms_is_that_of_the_formula(direction):
     assert wire < 0.87 * en13906.turn_rate(E, WIRE, MEAN, 5.5)
     assert summary["turn_rate_Nmm_per_deg"] == pytest.approx(wire, rel=0.01)
     stress = en13906.bending_stress(abs(summary["torque_max_Nmm"]), WIRE)
-    assert summary["max_bending_inside_MPa"] == pytest.approx(en13906.bending_correction(MEAN / WIRE) * stress, rel=0.01)
+    assert summary["max_bending_inside_MPa"] == pytest.approx(
+        en13906.bending_correction(MEAN / WIRE) * stress, rel=0.01
+    )
 
 
 def test_a_coiled_spring_holds_more_when_it_is_wound_further(ck15):
@@ -144,7 +149,16 @@ def test_a_coiled_spring_holds_more_when_it_is_wound_further(ck15):
 def test_a_restart_with_hooks_goes_on_to_the_same_bits(resumed_after):
     hooks = WOUND | both("hooks", shape="side") | {"turns": 2.0}
     loading = [{"to": {"force": -40}, "steps": 3}]
-    program = check({"spring": hooks, "material": "elastic", "ends": "clamped", "mesh": MESH, "accuracy": "none", "loading": loading})
+    program = check(
+        {
+            "spring": hooks,
+            "material": "elastic",
+            "ends": "clamped",
+            "mesh": MESH,
+            "accuracy": "none",
+            "loading": loading,
+        }
+    )
     whole = Analysis(program, MPI.COMM_SELF)
     whole.run()
     resumed = resumed_after(program, 1)

@@ -142,7 +142,9 @@ class Heads:
         if self.clamped and not self._turning:
             for end, (station, _) in enumerate(self.tips.values()):
                 x = self.layout.at_station(getattr(self.system.state["x"], when), station)
-                values[SEAT_DOFS * end : SEAT_DOFS * end + 3] = x - self.layout.rod.line.stations[station] + self._points[end]
+                values[SEAT_DOFS * end : SEAT_DOFS * end + 3] = (
+                    x - self.layout.rod.line.stations[station] + self._points[end]
+                )
         return values
 
     def reactions(self, when: When) -> np.ndarray:

@@ -113,9 +113,7 @@ def opening(run: Run, phase: Phase) -> list[int]:
     return found
 
 
-def smooth(
-    travel: npt.ArrayLike, force: npt.ArrayLike, kinks: Sequence[int] = ()
-) -> tuple[np.ndarray, np.ndarray]:
+def smooth(travel: npt.ArrayLike, force: npt.ArrayLike, kinks: Sequence[int] = ()) -> tuple[np.ndarray, np.ndarray]:
     """A phase's force over travel, through its steps by monotone cubic Hermite interpolation (Fritsch and Carlson).
 
     It has no corner at a step and no value beyond its neighbours, so that it neither rounds off nor overshoots a kink

@@ -69,7 +69,9 @@ def fatigue_view(run: Run) -> Panel | None:
     heights = np.ptp(data["working_position"].values[..., 2], axis=1)
     x = data["working_position"].values[int(np.argmin(heights))]
     rings = PER_ELEMENT * (len(x) - 1) + 1
-    places, shown = surface(data["turn"].values, x, data["wire_radius"].values, used[number], inside(run), rings, coil=coil_turns(run))
+    places, shown = surface(
+        data["turn"].values, x, data["wire_radius"].values, used[number], inside(run), rings, coil=coil_turns(run)
+    )
     trace = {
         "type": "surface",
         "cmin": 0.0,

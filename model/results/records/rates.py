@@ -130,7 +130,7 @@ def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, 
 
     The line of an open spring, F = a + R s, by the first two steps without contact, and by the last two of the last
     release, is followed back to that of the closed one, s = c F by the first step in which coils touch: there
-    F0 = a/(1 − R c). Without such a step c is zero; it is the compliance of hooks and of coils that press on each other.
+    F0 = a/(1 − R c). Without such a step c is zero; it is that of hooks and of coils that press on each other.
     """
     names = "initial_tension_N", "initial_tension_after_N", "open_rate_N_per_mm"
     if not setup.wound_solid:
