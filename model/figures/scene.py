@@ -83,8 +83,8 @@ def springs(path: str | Path, run: Run) -> None:
     arbor = run.case.get("contact", {}).get("arbor")
     for place, number in enumerate(snapshots):
         if arbor:
-            foot = (place * view.column, 0.0, 0.5 * (low + high))
-            rod = pv.Cylinder(center=foot, direction=(0, 0, 1), radius=0.5 * arbor, height=1.1 * (high - low))
+            half = (place * view.column, 0.0, 0.5 * (low + high))
+            rod = pv.Cylinder(center=half, direction=(0, 0, 1), radius=0.5 * arbor, height=1.1 * (high - low))
             plotter.add_mesh(rod, color="lightgrey", smooth_shading=True, split_sharp_edges=True)
         places, stress = closed(*(one[None] for one in wires[place]))
         mesh = pv.StructuredGrid(*np.moveaxis(places[0] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
