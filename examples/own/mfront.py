@@ -39,7 +39,8 @@ int Plasticity_Tridimensional(View *d) {
   d->s1.v[6] = d->s0.v[6] + p;
   double radial = over > 0 ? 2 * G * (3 * G / (3 * G + H) - 1 + left) : 0;
   for (int i = 0; i < 6; i++) for (int j = 0; j < 6; j++)
-    d->K[6 * i + j] = 2 * G * left * ((i == j) - (i < 3 && j < 3) / 3.0) + (i < 3 && j < 3) * bulk - radial * n[i] * n[j];
+    d->K[6 * i + j] = 2 * G * left * ((i == j) - (i < 3 && j < 3) / 3.0) + (i < 3 && j < 3) * bulk
+      - radial * n[i] * n[j];
   return 1;
 }
 """
@@ -60,8 +61,8 @@ case = Case(
     | {"accuracy": "none"}
 )
 theirs, ours = solve(case), solve(case, law=law)
-print(
-    f"set {ours.set:.5f} mm, by the library's law {theirs.set:.5f} mm; {ours.force.max():.3f} and {theirs.force.max():.3f} N"
-)
+print(f"set {ours.set:.4f} mm, by the library's law {theirs.set:.4f} mm")
+print(f"greatest force {ours.force.max():.2f} N, by the library's law {theirs.force.max():.2f} N")
 assert np.allclose(ours.force, theirs.force, rtol=1e-3, atol=1e-3 * theirs.force.max())
-assert abs(ours.set / theirs.set - 1.0) < 1e-3 and theirs.set > 2.0
+assert abs(ours.set / theirs.set - 1.0) < 1e-3
+assert theirs.set > 10.0

@@ -1,7 +1,7 @@
 """Laws of MFront by the C function of its generic interface, as laws of six stresses.
 
 `mfront --obuild --interface=generic` builds a library with a function NAME_Tridimensional for each small-strain
-behaviour. It takes a view of pointers (as MFrontGenericInterfaceSupport 2 and 3 lay it out) to what follows:
+behaviour. It takes a view of pointers, as the present MFrontGenericInterfaceSupport lays it out, to what follows:
 
     error message (here none), Δt, K, proposed step, speed of sound, and for the states at the start and at the end:
     gradients, thermodynamic forces, mass density, material properties, internal state variables, stored energy,
@@ -82,4 +82,4 @@ def behaviour(function: Any, internal: int, external: Sequence[float] = (293.15,
             new_state[STATES + k] = work[v1 + k]
         return solved
 
-    return law  # type: ignore[no-any-return]
+    return law
