@@ -64,7 +64,7 @@ class Basis:
         y, z = ((places - self.origin) @ self.axes.T).T
         a, b = self.powers.T
         of_y, of_z = (np.vander(x, self.powers.max() + 1, increasing=True) for x in (y, z))  # their powers
-        lower_y, lower_z = (k * of[:, np.maximum(k - 1, 0)] for k, of in ((a, of_y), (b, of_z)))  # d(x^k)/dx = k x^(k-1)
+        lower_y, lower_z = a * of_y[:, np.maximum(a - 1, 0)], b * of_z[:, np.maximum(b - 1, 0)]
         of_y, of_z = of_y[:, a], of_z[:, b]
         slope_y, slope_z = lower_y * of_z, of_y * lower_z
         (yy, yz), (zy, zz) = self.axes
