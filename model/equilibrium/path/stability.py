@@ -86,14 +86,8 @@ class Stability:
         return factors
 
     def weights(self, load: Load) -> np.ndarray:
-        """Of this rank's unknowns in a mode's norm: 1 of displacements, a tenth of the extent squared of rotations."""
-        assert isinstance(self.layout, LineLayout)
-        n, extent = len(self.layout.station_dofs), self.layout.rod.extent
-        natural = np.ones(self.layout.size)
-        natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * extent) ** 2
-        scale = self.layout.from_order(natural)
-        scale[load.held] = 0.0
-        return scale.copy()
+        """Of this rank's free unknowns in a mode's norm, see Layout; 0 of the others."""
+        return np.where(load.is_held, 0.0, self.layout.weights)
 
     def _start_block(self) -> list[PETSc.Vec]:
         """Vectors to begin with, the same on any number of ranks."""
