@@ -208,7 +208,7 @@ class Iteration:
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
-        step = self.search(x, y, self.F, self.load, self.load_factor, self._predicts)
+        step = self.search(x, y, self.F, self.load, self.load_factor, self._predicts, self._damped)
         self._step_length = step.contact_limit * step.value
         if not step.ends_on_the_way:
             self.damping.learn(y, self.F, self.load, self._step_length)
