@@ -22,7 +22,7 @@ from coilset.model.equilibrium.system.layout import Layout
 from coilset.model.equilibrium.system.load import Drag, Load
 
 SHORT = 0.3  # share of a correction below which the next one is damped
-RELAX = 0.1  # factor on the damping after a correction of which more was made
+RELAX = 0.3  # factor on the damping after a correction of which more was made
 NOTHING = 1e-2  # of κ: damping below it is left out
 
 
