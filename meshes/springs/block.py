@@ -33,7 +33,7 @@ def block_height(spring: "Spring") -> float:
 
 
 def _each_on_the_next(spring: "Spring") -> float:
-    ends = spring.free_length - (spring.height(spring.turns) - spring.height(0.0))
+    ends = spring.body_length - (spring.height(spring.turns) - spring.height(0.0))
     n = spring.turns
     if n <= 1.0:  # no coil has a next one; the pitch of a coil that goes on
         mean = 0.5 * (spring.wire(0.0) + spring.wire(n))

@@ -133,12 +133,16 @@ def of_parquet(path: str | Path, name: str) -> ControlVariate:
     import pyarrow.compute as pc
     import pyarrow.parquet as pq
 
-    table = pq.read_table(path, columns=["case", "model", name], read_dictionary=["model"])
-    case, value = table["case"].to_numpy(), table[name].to_numpy()
-    of_rods = pc.equal(table["model"], "rod").to_numpy()
-    uniform = np.full(int(case.max(initial=-1)) + 1, np.nan)
-    uniform[case[~of_rods]] = value[~of_rods]
-    rod, beside = value[of_rods], uniform[case[of_rods]]
+    file = pq.ParquetFile(path)
+    uniform = np.full(int(file.schema_arrow.metadata[b"cases"]), np.nan)
+    cases, values = [], []  # of rods
+    for batch in file.iter_batches(columns=["case", "model", name]):
+        case, value = batch["case"].to_numpy(), batch[name].to_numpy(zero_copy_only=False)
+        of_rods = pc.equal(batch["model"], "rod").to_numpy(zero_copy_only=False)
+        uniform[case[~of_rods]] = value[~of_rods]
+        cases.append(case[of_rods])
+        values.append(value[of_rods])
+    rod, beside = np.concatenate([[], *values]), uniform[np.concatenate([np.empty(0, int), *cases])]
     both = np.isfinite(rod) & np.isfinite(beside)
     return ControlVariate(rod[both], beside[both], uniform[np.isfinite(uniform)])
 

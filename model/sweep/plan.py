@@ -21,6 +21,7 @@ from coilset.model.sweep.engines.pool import Task
 from coilset.model.sweep.keys import Keys, Model, as_rod
 from coilset.model.sweep.packed import Row, Strings
 from coilset.model.sweep.rehearsal import Rehearsal
+from coilset.model.sweep.shards import WHOLE, Shard
 from coilset.model.sweep.spec import SweepSpec
 
 
@@ -31,6 +32,7 @@ class Plan:
         path: the sweep file.
         kept: a file with the keys as `keep` wrote them; if it is that of this plan, the cases are not checked again,
             which takes 0.3 ms each.
+        shard: only its cases are checked, and those of the others have empty keys, unless `kept` has them.
 
     Attributes:
         spec: SweepSpec.
@@ -46,7 +48,7 @@ class Plan:
             input; one line with file, place and value.
     """
 
-    def __init__(self, path: str | Path, kept: Path | None = None) -> None:
+    def __init__(self, path: str | Path, kept: Path | None = None, shard: Shard = WHOLE) -> None:
         self.path = Path(path)
         kind = "a sweep file holds the entries case: and vary:"
         self.spec = check(read_data(path, kind), path, SweepSpec)
@@ -60,7 +62,7 @@ class Plan:
             self.rows = rows(self.spec, self.base_values)
             self.notices: list[str] = []
             self._sources: list[int] = []  # the first case of each material and file
-            self.keys = (kept and self._kept(kept)) or Strings(self._check_cases())
+            self.keys = (kept and self._kept(kept)) or Strings(self._check_cases(shard))
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -111,17 +113,21 @@ class Plan:
                 return None
         return value
 
-    def _check_cases(self) -> Iterator[str]:
-        """The keys, one after the other."""
+    def _check_cases(self, shard: Shard) -> Iterator[str]:
+        """The keys, one after the other; empty those of other shards."""
         rehearsal, keys = Rehearsal(self.spec), Keys()
         for number, row in enumerate(self.rows):
+            if not shard.has(number):
+                yield ""
+                continue
             case, before = self._checked(row), keys.sources
             self.notices = self.notices or list(case.notices())
             rehearsal.try_case(row, case)
             yield keys(case, self.spec.model)
             if keys.sources > before:
                 self._sources.append(number)
-        rehearsal.conclude()
+        if shard.count == 1:  # a value may be right in the cases of another shard only
+            rehearsal.conclude()
 
     def _checked(self, row: Row) -> Case:
         try:

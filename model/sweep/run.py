@@ -12,7 +12,7 @@ from coilset.model.sweep.journal import Journal, journals, read_records
 from coilset.model.sweep.keys import Model
 from coilset.model.sweep.packed import Row
 from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.shards import Shard
+from coilset.model.sweep.shards import WHOLE, Shard
 
 AHEAD = 2  # messages submitted per worker, so that none is idle
 MESSAGE_SECONDS = 0.5  # of work in one message: short cases share one, which costs about 0.4 ms
@@ -25,11 +25,11 @@ def finished(folder: str | Path, retry: bool) -> set[str]:
     return {record["key"] for record in done if not (retry and record["status"] == "failed")}
 
 
-def missing(plan: Plan, done: Collection[str], shard: Shard | None = None) -> Iterator[tuple[Row, str, Model]]:
-    """Inputs, key and model of what is not in `done`, each once; of one shard, if it is given."""
+def missing(plan: Plan, done: Collection[str], shard: Shard = WHOLE) -> Iterator[tuple[Row, str, Model]]:
+    """Inputs, key and model of what is not in `done`, each once; of a shard, its cases by each model."""
     seen = set(done)
     for number, (row, key, model) in enumerate(plan.tasks()):
-        if key not in seen and (shard is None or shard.has(number)):
+        if shard.has(number % len(plan)) and key not in seen:
             seen.add(key)
             yield row, key, model
 

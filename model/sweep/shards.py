@@ -92,6 +92,9 @@ class Shard:
             )
 
 
+WHOLE = Shard()
+
+
 def duration(text: str | None, option: str) -> float:
     """Seconds from `3:50:00`, hours, minutes and seconds; without a text, infinitely many.
 

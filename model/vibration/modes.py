@@ -20,7 +20,7 @@ from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.matrix import TangentMatrix
 from coilset.model.equilibrium.system.system import System
 from coilset.model.rod.rod import Rod
-from coilset.model.vibration.mass import TONNE, mass_matrix
+from coilset.model.vibration.mass import TONNE, Mass
 
 TOLERANCE = 1e-10  # of K φ − λ M φ, relative to λ
 BELOW = 1e-4  # the shift is so far below zero, in (wave speed over length of the wire)²: K may be singular
@@ -65,7 +65,7 @@ def natural_modes(system: System, load: Load, density: float, count: int = 10, g
     """
     layout = system.line
     system.restore()
-    mass = mass_matrix(layout, density)
+    mass = Mass(layout, density).matrix()
     stiffness, ordering = elastic_stiffness(system, load, glued)
     moving = mass.copy()
     moving.zeroRowsColumns((load.held + layout.start).astype(PETSc.IntType), diag=0.0)

@@ -5,7 +5,7 @@ import signal
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,7 +21,7 @@ from coilset.model.sweep.engines.processes import Workers
 from coilset.model.sweep.journal import Journal, Records, journals, read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import Limits, finished, missing, run
-from coilset.model.sweep.shards import Shard
+from coilset.model.sweep.shards import WHOLE, Shard
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.log import only_run
 from coilset.scripts.terminal.target import results_folder
@@ -42,7 +42,7 @@ class Options:
     resume: bool = False
     retry: bool = False
     collect: bool = False
-    shard: Shard = field(default_factory=Shard)
+    shard: Shard = WHOLE
     until: float = inf  # seconds from the start of the command
     budget: float = inf  # seconds of all cases together
     engine: str | None = None
@@ -96,7 +96,7 @@ def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> P
         raise InputError("discards what other options keep; give one of them", "--overwrite")
     shard = options.shard
     refuse_obstacles(out, [shard.journal, "plan.npz", "sweep.nc", "sweep.parquet", "workers.log"])
-    plan = Plan(sweep_file, out / "plan.npz")
+    plan = Plan(sweep_file, out / "plan.npz", shard)
     if not (options.force or options.continues) and journals(out):
         raise InputError("holds a sweep; use --resume to finish it, or --overwrite to overwrite it", "--out", out)
     with making(out):
@@ -104,7 +104,7 @@ def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> P
     held.enter_context(only_run(out) if shard.count == 1 else shard.claimed(out))
     if options.force:
         clear(out, ("sweep.nc", "sweep.parquet", "report.html", *(path.name for path in journals(out))))
-    if shard.number == 1 and len(plan) >= KEPT_FROM:
+    if shard.count == 1 and len(plan) >= KEPT_FROM:
         plan.keep(out / "plan.npz")
     return plan
 

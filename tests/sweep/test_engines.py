@@ -15,7 +15,7 @@ from coilset.model.sweep.engines.processes import Workers
 from coilset.model.sweep.journal import Journal, Records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import Limits, finished, missing, run
-from coilset.model.sweep.shards import Shard, duration
+from coilset.model.sweep.shards import WHOLE, Shard, duration
 
 UNIFORM = """
     model: uniform_rod
@@ -26,9 +26,9 @@ UNIFORM = """
 """
 
 
-def solve(plan, folder, shard=None, pool=None, limits=None):
+def solve(plan, folder, shard=WHOLE, pool=None, limits=None):
     """Run what is missing of a shard; returns the records in their order."""
-    shard, records = shard or Shard(), []
+    records = []
     folder.mkdir(exist_ok=True)
     journal = Journal(folder / shard.journal, locked=False)
     todo = missing(plan, finished(folder, retry=False), shard)
@@ -53,7 +53,9 @@ def summaries(plan, folder):
 def test_shards_together_are_the_whole_and_none_runs_twice(plan, tmp_path):
     whole, shared = tmp_path / "whole", tmp_path / "shared"
     assert {one["status"] for one in solve(plan, whole)} == {"done"}
-    ran = [one["key"] for number in (1, 2, 3) for one in solve(plan, shared, Shard(number, 3))]
+    shards = [(Plan(plan.path, shard=shard), shard) for shard in (Shard(1, 3), Shard(2, 3), Shard(3, 3))]
+    assert [sum(map(bool, part.keys)) for part, _shard in shards] == [3, 3, 2]  # only its own cases are checked
+    ran = [one["key"] for part, shard in shards for one in solve(part, shared, shard)]
     assert sorted(ran) == sorted(key for _, key, _ in plan.tasks())
     assert len(set(ran)) == 10
     assert summaries(plan, shared) == summaries(plan, whole)

@@ -64,7 +64,8 @@ def test_all_cases_of_a_parquet_file_count(tmp_path):
     case = np.random.default_rng(1).permutation(N + FEW)
     model, at = np.where(case < N, "uniform_rod", "rod"), np.where(case < N, case, case - N)
     values = np.where(case < N, uniform[at], rod[at])
-    pq.write_table(pa.table({"case": at, "model": model, "set_mm": values}), tmp_path / "sweep.parquet")
+    table = pa.table({"case": at, "model": model, "set_mm": values}).replace_schema_metadata({"cases": str(N)})
+    pq.write_table(table, tmp_path / "sweep.parquet")
     found, good = of_parquet(tmp_path / "sweep.parquet", "set_mm"), np.arange(FEW) != 3
     expected = ControlVariate(rod[:FEW][good], uniform[:FEW][good], uniform[np.isfinite(uniform)])
     for name in ("value", "low", "high"):
