@@ -43,14 +43,11 @@ class Damping:
         """No damping yet."""
         self.value = 0.0
 
-    def applied(self, load: Load) -> Load:
-        """The load with the damping, for the tangent only."""
-        if self.value == 0.0:
-            return load
-        stiffness = self.value * self.layout.weights
-        if load.drag is not None:
-            stiffness = stiffness + load.drag.stiffness
-        return load.dragged(Drag(stiffness, np.zeros_like(stiffness)))
+    def add_stiffness(self, matrix: PETSc.Mat, load: Load) -> None:
+        """Add c M of the free unknowns to a tangent; collective."""
+        if self.value > 0.0:
+            weights = np.where(load.is_held, 0.0, self.layout.weights)
+            Drag(self.value * weights, np.zeros_like(weights)).add_stiffness(matrix)
 
     def learn(self, y: PETSc.Vec, F: PETSc.Vec, load: Load, share: float) -> None:
         """Set the damping of the next correction.

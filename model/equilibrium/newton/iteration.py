@@ -189,7 +189,8 @@ class Iteration:
 
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         self.factorisations += 1
-        self.system.tangent(X, self.damping.applied(self.load), self.matrix, self._at_step_start, self._share)
+        self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._share)
+        self.damping.add_stiffness(self.matrix.mat, self.load)
         self._damped = self.damping.value > 0.0
         self.predicted |= self._share is not None
         self._at_step_start, self._share = False, None
