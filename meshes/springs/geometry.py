@@ -26,8 +26,9 @@ class Spring:
     The diameter of a wire that is not round is its height along the spring.
 
     The turn t counts from the bottom end, and the seats are the planes z = 0 and z = free length. The centre line is
-    `c(t) = (r cos θ + x, r sin θ + y, z)` with `θ = phase + hand 2π t` and the offsets x, y of a curved axis. All lengths are in mm. Hooks and arms go on beyond the
-    coil, below turn 0 and above the last turn, with the speed ds/dt of its ends.
+    `c(t) = (r cos θ + x, r sin θ + y, z)` with `θ = phase + hand 2π t` and the offsets x, y of a curved axis. All
+    lengths are in mm. Hooks and arms go on beyond the coil, below turn 0 and above the last turn, with the speed ds/dt
+    of its ends.
 
     Args:
         radius: mean radius over the turn, a `PiecewisePolynomial` from 0 to the number of turns.

@@ -11,9 +11,9 @@ from coilset.model.figures.panels.buckling import buckling_axis, buckling_mode
 from coilset.model.figures.panels.characteristic import characteristic, rate_curve
 from coilset.model.figures.panels.cost import cost, step_error
 from coilset.model.figures.panels.fatigue import fatigue_map, fatigue_view
+from coilset.model.figures.panels.force_line import side_force, side_view_x, side_view_y, view_along_axis
 from coilset.model.figures.panels.material_curves import material_curve
 from coilset.model.figures.panels.panel import Panel
-from coilset.model.figures.panels.force_line import side_force, side_view_x, side_view_y, view_along_axis
 from coilset.model.figures.panels.seats import active_turns, contact, contact_length, eccentricity, force_centre
 from coilset.model.figures.panels.section_map import normal_map, shear_map
 from coilset.model.figures.panels.spring_view import spring_view

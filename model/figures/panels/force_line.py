@@ -40,7 +40,9 @@ def _side_view(run: Run, across: int) -> Panel | None:
             float(data[f"{end}_shift_{name}_mm"].values[step] + data[f"{end}_centre_{name}_mm"].values[step])
             for end in ("bottom", "top")
         ]
-        label = f"{plain(float(data['travel_mm'].values[step]))} mm, {plain(abs(float(data['force_N'].values[step])))} N"
+        label = (
+            f"{plain(float(data['travel_mm'].values[step]))} mm, {plain(abs(float(data['force_N'].values[step])))} N"
+        )
         traces.append(curve(places, [0.0, float(data["seat_height_mm"].values[step])], number, marker=5, name=label))
     spec = run.case["force_line"]
     reach = [float(wire[:, across].min()), float(wire[:, across].max())]

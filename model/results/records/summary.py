@@ -22,7 +22,6 @@ from coilset.model.section import surface
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 
-
 CROSSINGS = tuple(name for name in LINE if name.startswith("line_"))
 
 
