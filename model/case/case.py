@@ -44,7 +44,7 @@ class SectionSpec(Strict):
             description="whether stress rotates with the material relative to the section, as in the thesis (5.2.33)"
         ),
     ] = False
-    degree: Annotated[Whole, Field(ge=1, le=7, description="degree of the polynomials of a warping section")] = 3
+    degree: Annotated[Whole, Field(ge=1, le=9, description="degree of the polynomials of a warping section")] = 3
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
