@@ -60,7 +60,9 @@ def _show_version(wanted: bool) -> None:
 @app.callback()
 def options(
     context: typer.Context,
-    ranks: int = typer.Option(1, "-n", min=1, metavar="RANKS", help="run solve, sweep or python on several MPI ranks"),
+    ranks: int = typer.Option(
+        1, "-n", min=1, metavar="RANKS", help="run solve, solid, sweep or python on several MPI ranks"
+    ),
     version: bool = typer.Option(False, "--version", is_eager=True, callback=_show_version, help="print versions"),
 ) -> None:
     """Options before the command."""
@@ -143,6 +145,23 @@ def slice_(
     from coilset.scripts.commands.slice import slice_case
 
     slice_case(case, out, force, settings, section, across, pictures)
+
+
+@app.command()
+def solid(
+    case: str = typer.Argument(help="case file (YAML) of a cylindrical spring of round wire"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE-solid]"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
+    turns: float = typer.Option(1.0, help="turns of the solid, 1 to 5"),
+    across: int = typer.Option(None, min=1, max=12, help="elements along a side of the wire's core [default: 2]"),
+    layers: int = typer.Option(24, min=4, max=400, help="elements round a turn"),
+    pictures: bool = typer.Option(True, help="draw the figures"),
+) -> None:
+    """Solve some turns of a cylindrical spring as a 3D solid, and as a rod beside it, and write the results."""
+    from coilset.scripts.commands.solid import solid_case
+
+    solid_case(case, out, force, settings, turns, across, layers, pictures)
 
 
 @app.command()
