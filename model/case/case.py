@@ -226,9 +226,8 @@ def _fraction(value: Any) -> Any:
 
 
 Below1 = Annotated[float, Field(gt=0, lt=1)]
-Part = Annotated[
-    Below1, BeforeValidator(_fraction, json_schema_input_type=Below1 | Annotated[str, Field(pattern=rf"^{PER_CENT}\s*%$")])
-]
+InPerCent = Annotated[str, Field(pattern=rf"^{PER_CENT}\s*%$")]
+Part = Annotated[Below1, BeforeValidator(_fraction, json_schema_input_type=Below1 | InPerCent)]
 """A part of one, above 0 and below, as a number or in per cent."""
 
 
