@@ -44,7 +44,7 @@ class SectionSpec(Strict):
             description="whether stress rotates with the material relative to the section, as in the thesis (5.2.33)"
         ),
     ] = False
-    degree: Annotated[Whole, Field(ge=1, le=7, description="degree of the polynomials of a warping section")] = 3
+    degree: Annotated[Whole, Field(ge=1, le=9, description="degree of the polynomials of a warping section")] = 3
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
@@ -335,7 +335,7 @@ class Case(Strict):
     def _heads_belong(self) -> Self:
         if self.ends == "seats" and self.heads != HeadsSpec():
             raise ValueError("heads are those of a clamped wire; give ends: clamped, or entries of seats")
-        holder: HeadsSpec | SeatsSpec = self.heads if self.ends == "clamped" else self.seats
+        holder: HeadsSpec | SeatsSpec = self.clamps if self.ends == "clamped" else self.seats
         given = {end: getattr(holder, end) for end in ("bottom", "top")}
         loose = {(end, name) for end, spec in given.items() for name in FREEDOMS if getattr(spec, name) == "free"}
         for number, phase in enumerate(self.loading):
@@ -402,6 +402,31 @@ class Case(Strict):
         if self.contact.friction.coils:
             raise ValueError("friction of coils on coils is for round wire; leave contact.friction.coils out")
         return self
+
+    @model_validator(mode="after")
+    def _tails_are_held(self) -> Self:
+        if self.ends == "seats" and self.tails:
+            raise ValueError(
+                f"spring.{self.tails}: seats press on coils, but these are held at their points; give ends: clamped"
+            )
+        return self
+
+    @property
+    def tails(self) -> str:
+        """Name of the entry of `spring` on wire beyond the coil, `hooks` or `arms`, or nothing."""
+        given = [name for name in ("hooks", "arms") if getattr(self.spring, name, None) is not None]
+        return given[0] if given else ""
+
+    @property
+    def clamps(self) -> HeadsSpec:
+        """How the heads of a clamped wire are held; hooks tilt at the point where they are pulled, unless `heads` says
+        otherwise."""
+        hooks = getattr(self.spring, "hooks", None)
+        given = {end: getattr(self.heads, end) for end in ("bottom", "top")}
+        for end, head in given.items():
+            if getattr(hooks, end, None) is not None and "tilt" not in head.model_fields_set:
+                given[end] = head.model_copy(update={"tilt": "free"})
+        return self.heads.model_copy(update=given)
 
     @property
     def targets(self) -> list[Phase]:
