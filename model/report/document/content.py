@@ -101,7 +101,7 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
         [(title, lines) for title, lines in tables if lines],
         bool(run),
         [_translated(panel, words) for panel in _panels(sheet, limits)],
-        [*missing, *remarks],
+        [*missing, *(["the hooks are not drawn"] if spring.has_tails else []), *remarks],
         words,
     )
 
@@ -126,11 +126,11 @@ def _design(sheet: Sheet, spring: Spring, words: Words) -> Iterator[Line]:
 
 
 def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
-    verdicts = {entry["name"]: entry for entry in summary.get("limits") or ()}
     for limit in limits:
         name, unit = quantity(limit.name)
-        judged = verdicts.get(limit.name)
-        value, mark = ("", "") if judged is None else (words.number(judged["value"]), " ✓" if judged["met"] else " ✗")
+        result = summary.get(limit.name)
+        mark = "" if result is None else " ✓" if limit.margin(result) >= 0.0 else " ✗"
+        value = words.number(result)
         between = f"{words.number(limit.low)} … {words.number(limit.high)}"
         name = DRAWN.get(limit.name) or (f"{name} mm" if is_working_number(limit.name) else name)
         yield Line(words(name), between, value, unit + mark)

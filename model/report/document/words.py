@@ -53,6 +53,7 @@ GERMAN = {
     "mass m": "Masse m",
     "growth of D to block": "Zunahme von D bis Block",
     "Extension spring, EN 13906-2": "Zugfeder, EN 13906-2",
+    "with hooks": "mit Ösen",
     "initial tension F0": "Vorspannkraft F0",
     "stress τ0": "Spannung τ0",
     "all others": "alle anderen",
