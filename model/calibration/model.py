@@ -35,7 +35,7 @@ BOUNDS = {
 TURNS = 2.0  # mm, within which the travel of a turn is sought
 CLOSED = 3.0  # times the least rate so far: beyond it coils have closed, and the wire is not what gives way
 LEAST = 0.005  # of the maximum force, below which a reading is of a spring that stands free
-SAME = 0.02  # difference of shares below which one whole rod counts for both
+SAME = 0.005  # difference of shares below which one whole rod counts for both
 HOPELESS = 1e6  # residuals where there is no equilibrium
 
 
