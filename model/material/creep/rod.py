@@ -35,7 +35,7 @@ Inverse = namedtuple("Inverse", "D k v")
 
 @njit(**KERNEL)
 def without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
-    """`increment.advance` if no stage yields; else, or if a stage finds no end, -1, and nothing of what is written counts."""
+    """`increment.advance` if no stage yields; else, or if one finds no end, -1: nothing of what is written counts."""
     q = law.viscous
     h, after = passes(q, old[7])
     before, change = old[7], after - old[7]
