@@ -446,7 +446,8 @@ def modes(run: Case | str | Path, at: str = "end", count: int = 10, glued: bool 
     >>> print(f"{modes(case, count=1).frequencies[0]:.0f} Hz")
     427 Hz
     """
-    from coilset.model.vibration.loaded import after_results, after_run, loaded_modes
+    from coilset.model.vibration.loaded import after_results, after_run
+    from coilset.model.vibration.modes import loaded_modes
 
     analysis = after_run(run._case, at) if isinstance(run, Case) else after_results(run, at)
     return loaded_modes(analysis, count, glued)

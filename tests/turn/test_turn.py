@@ -18,7 +18,7 @@ PROGRAM = "loading=[{to: {travel: 14}, steps: 2}, {hold: {hours: 10}, steps: 1},
 
 
 def test_a_turn_presses_creeps_and_is_released_like_the_rod(tmp_path):
-    solid_case(CASE, tmp_path, settings=[*SHORT, PROGRAM], across=2, layers=12)
+    solid_case(CASE, tmp_path, settings=[*SHORT, PROGRAM], across=2, layers=12, pictures=False)
     summary = json.loads((tmp_path / "summary.json").read_text())
     rows = list(csv.DictReader((tmp_path / "history.csv").read_text().splitlines()))
     rod = summary["rod"]
@@ -38,7 +38,6 @@ def test_a_turn_presses_creeps_and_is_released_like_the_rod(tmp_path):
         assert rod[name] == pytest.approx(summary[name], rel=tolerance), name
     assert summary["residual_shear_inside_MPa"] < 0.0 < summary["shear_inside_max_MPa"]
     assert sorted(path.name for path in (tmp_path / "fields").glob("*.vtu"))[0] == "01_travel_14_mm.vtu"
-    assert (tmp_path / "comparison.png").read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(

@@ -153,6 +153,12 @@ class Load:
         return sum_of_ranks(self.layout.comm, self.increments @ other.increments) / other.prescribed**2
 
     @cached_property
+    def changes(self) -> bool:
+        """Whether a part of the step is another problem than the whole: forces may differ from those at its start;
+        collective when it is first requested."""
+        return self.prescribed > 0.0 or sum_of_ranks(self.layout.comm, len(self.loaded)) > 0.0
+
+    @cached_property
     def _greatest(self) -> float:
         """The greatest of the prescribed increments of all ranks; collective when it is first requested."""
         return max_of_ranks(self.layout.comm, largest(self.increments))

@@ -211,6 +211,11 @@ class System:
         return self.last.penetration if self.last.has_stress else np.inf
 
     @property
+    def is_symmetric(self) -> bool:
+        """Is the tangent symmetric in equilibrium? Friction has no potential."""
+        return not (self.contacts and self.touching.need_rotations)
+
+    @property
     def touches(self) -> bool:
         """Is any contact closed at the last evaluation, on any rank?"""
         return self.last.closed > 0
