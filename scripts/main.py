@@ -10,7 +10,7 @@ from coilset.model.runtime.processes import number_of_ranks, usable_cores
 from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, STAGES, announce_compiling, compile_first
 from coilset.scripts.startup import announce_begin, load_for_solve, typer
-from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target
+from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target, sheet_targets
 
 HELP = """How far does a coil spring set, and what stress remains in it?
 
@@ -35,6 +35,13 @@ class Engine(StrEnum):
     processes = "processes"
     mpi = "mpi"
     dask = "dask"
+
+
+class Language(StrEnum):
+    """Of a data sheet."""
+
+    en = "en"
+    de = "de"
 
 
 THREADS = typer.Option(
@@ -200,9 +207,13 @@ def sheet(
     grade: int = typer.Option(2, min=1, max=3, help="quality grade of EN 15800"),
     surface: str = typer.Option("as coiled", help='"as coiled" or "shot peened", for the fatigue limits'),
     dynamic: bool = typer.Option(False, "--dynamic", help="cyclic load: larger minimum gaps between the coils"),
-    out: str = typer.Option(
-        None, callback=folder_target, help="folder for the Goodman diagram [default: results/NAME-OF-CASE]"
+    out: list[str] = typer.Option(
+        [],
+        callback=sheet_targets,
+        help="sheet.html, .pdf, .csv or .dxf, or the folder of the Goodman diagram; may be given several times "
+        "[default: results/NAME-OF-CASE]",
     ),
+    language: Language = typer.Option("en", help="of the files: en or de"),
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite an existing figure"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     wires: bool = typer.Option(False, "--wires", help="list the standard wires, or all numbers of --wire"),
@@ -214,7 +225,9 @@ def sheet(
     if wires:
         sheets.list_wires(wire)
     else:
-        sheets.sheet(case, results, wire, length, grade, surface, dynamic, out, force, settings, pictures)
+        sheets.sheet(
+            case, results, wire, length, grade, surface, dynamic, out, language.value, force, settings, pictures
+        )
 
 
 @app.command()

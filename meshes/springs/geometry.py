@@ -1,7 +1,7 @@
 """The geometry of a spring as functions of the turn."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -14,8 +14,10 @@ from coilset.meshes.springs.ends import OPEN, EndCoils
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.stations import ElementsPerTurn, stations
 from coilset.meshes.tails import Tail
+from coilset.model.base.errors import InputError
 
 INTERVALS_PER_TURN = 64
+SAME = 1e-9  # relative difference of a height from a bound that is rounding
 STRAIGHT = 1e-9  # |c′ × c″| over |c′|² below which a wire has no normal
 
 
@@ -26,8 +28,9 @@ class Spring:
     The diameter of a wire that is not round is its height along the spring.
 
     The turn t counts from the bottom end, and the seats are the planes z = 0 and z = free length. The centre line is
-    `c(t) = (r cos θ, r sin θ, z)` with `θ = phase + hand 2π t`. All lengths are in mm. Hooks and arms go on beyond the
-    coil, below turn 0 and above the last turn, with the speed ds/dt of its ends.
+    `c(t) = (r cos θ + x, r sin θ + y, z)` with `θ = phase + hand 2π t` and the offsets x, y of a curved axis. All
+    lengths are in mm. Hooks and arms go on beyond the coil, below turn 0 and above the last turn, with the speed ds/dt
+    of its ends.
 
     Args:
         radius: mean radius over the turn, a `PiecewisePolynomial` from 0 to the number of turns.
@@ -40,6 +43,7 @@ class Spring:
         measured_axis: fitted axis of a measured spring in the coordinates of its file; None of a drawn one.
         section: boundary of a wire that is not round, in half its height, y towards the coil's axis and z upwards;
             None of a round one.
+        axis: offsets x and y of the coil's centre over the turn, or None.
         tails: the wire below turn 0 and above the last turn, a `Tail` or None each.
     """
 
@@ -52,6 +56,7 @@ class Spring:
     phase: float = 0.0
     measured_axis: Axis | None = None
     section: Boundary | None = None
+    axis: tuple[PiecewisePolynomial, PiecewisePolynomial] | None = None
     tails: tuple[Tail | None, Tail | None] = (None, None)
 
     @property
@@ -83,7 +88,8 @@ class Spring:
     def breaks(self) -> np.ndarray:
         """Turns between which functions of the coil are single polynomials, at least `INTERVALS_PER_TURN` per turn."""
         even = np.linspace(0.0, self.turns, int(np.ceil(INTERVALS_PER_TURN * self.turns)) + 1)
-        t = np.unique(np.concatenate([even, self.radius.x, self.height.x, self.wire.x]))
+        own = [self.radius.x, self.height.x, self.wire.x, *(() if self.axis is None else (one.x for one in self.axis))]
+        t = np.unique(np.concatenate([even, *own]))
         return t[np.concatenate([[True], np.diff(t) > 1e-9])]
 
     @cached_property
@@ -122,11 +128,14 @@ class Spring:
     def _with_tails(
         self, turn: np.ndarray | float, order: int, of_coil: Callable[[np.ndarray], np.ndarray]
     ) -> np.ndarray:
-        """A derivative of the centre line by the turn: `of_coil`, and that of hooks or arms beyond it."""
+        """A derivative of the centre line by the turn: `of_coil` with the axis, and that of hooks or arms beyond it."""
         t = np.asarray(turn, dtype=float)
+        within = np.clip(t, 0.0, self.turns) if self.has_tails else t
+        found = of_coil(within)
+        if self.axis is not None:
+            found[..., :2] += self._axis_at(within, order)
         if not self.has_tails:
-            return of_coil(t)
-        found = of_coil(np.clip(t, 0.0, self.turns))
+            return found
         for tail, speed, side, beyond in zip(self.tails, self._speeds, (-1.0, 1.0), (-t, t - self.turns), strict=True):
             out = beyond > 0.0
             if tail is not None and out.any():
@@ -154,6 +163,19 @@ class Spring:
             return np.stack([r * np.cos(θ), r * np.sin(θ), z], axis=-1)
 
         return self._with_tails(turn, 0, of_coil)
+
+    def _axis_at(self, turn: np.ndarray | float, order: int) -> np.ndarray:
+        """A derivative of the axis's offsets, shape (..., 2), mm."""
+        assert self.axis is not None
+        return np.stack([one.derivative(order)(turn) if order else one(turn) for one in self.axis], axis=-1)
+
+    def aside(self, low: np.ndarray | float, up: np.ndarray | float) -> np.ndarray:
+        """By how much the coil at turns `up` is farther from the axis than that at `low` on the same side, mm."""
+        away: np.ndarray = self.mean_radius(up) - self.mean_radius(low)
+        if self.axis is None:
+            return away
+        shift, θ = self._axis_at(up, 0) - self._axis_at(low, 0), self.angle(low)
+        return away + shift[..., 0] * np.cos(θ) + shift[..., 1] * np.sin(θ)
 
     def angle(self, turn: np.ndarray | float) -> np.ndarray:
         """Polar angle of the centre line at the turns, rad, in their shape."""
@@ -193,6 +215,11 @@ class Spring:
         return self._coil_speed(np.clip(turn, 0.0, self.turns))
 
     def _coil_speed(self, turn: np.ndarray | float) -> np.ndarray:
+        if self.axis is not None:
+            θ, r, dθ = self.angle(turn), self.radius(turn), self.hand * 2 * np.pi
+            along = _in_plane(θ, self.slope(turn), r * dθ, self._pitch(turn))
+            along[..., :2] += self._axis_at(turn, 1)
+            return np.asarray(np.linalg.norm(along, axis=-1))
         return np.sqrt(self.slope(turn) ** 2 + (2 * np.pi * self.radius(turn)) ** 2 + self._pitch(turn) ** 2)
 
     def tangent(self, turn: np.ndarray | float) -> np.ndarray:
@@ -307,6 +334,25 @@ class Spring:
         rest = np.abs(self.height(along[i - 1 : i + 1]) - level) - 0.5 * self.wire(along[i - 1 : i + 1])
         last = along[i - 1] - rest[0] * (along[i] - along[i - 1]) / (rest[1] - rest[0])
         return float(abs(last - along[0]))
+
+    def at_height(self, height: float) -> "Spring":
+        """The spring between seats at a height, mm: every pitch p becomes p − λ (p − d), with one λ for all turns.
+
+        Coils that lie on each other remain so, and the wire keeps its radius, which in truth grows a little.
+
+        Raises:
+            InputError: a height that is not between block and the free length.
+        """
+        low, high = self.block_height, self.free_length
+        if not low * (1.0 - SAME) <= height <= high * (1.0 + SAME):
+            raise InputError(
+                f"{height:g} mm is impossible; must be between the block height {low:.5g} and the free length "
+                f"{high:.5g} mm",
+                "height",
+            )
+        closing = self.height - self.wire.antiderivative()  # play of all turns below a turn
+        solid = replace(self, height=self.height - closing).free_length
+        return replace(self, height=self.height - closing * ((high - height) / (high - solid)))
 
     def stations(self, elements_per_turn: ElementsPerTurn = 16, sagitta: float | None = None) -> np.ndarray:
         """Increasing turns of the nodes of a line mesh, see `coilset.meshes.springs.stations.stations`."""

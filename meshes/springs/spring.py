@@ -17,7 +17,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.measured import MeasuredSpec
 from coilset.meshes.springs.past import Peening, Relief
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
-from coilset.meshes.springs.shapes import DiameterProfile, Length, Profile, profile_function
+from coilset.meshes.springs.shapes import CurvedAxis, DiameterProfile, Length, Profile, profile_function
 from coilset.meshes.springs.wire import WireSpec
 from coilset.meshes.tails import Arms, Hooks, tail
 from coilset.model.base.errors import InputError
@@ -61,6 +61,9 @@ class SpringSpec(Strict):
     ] = None
     free_length: Annotated[
         Length | None, Field(description="outer length of the unloaded spring, mm; or give pitch")
+    ] = None
+    axis: Annotated[
+        CurvedAxis | None, Field(description="offsets of the coil's centre over the turns; left out: a straight axis")
     ] = None
     hand: Annotated[Literal["right", "left"], Field(description="direction of the helix")] = "right"
     end_coils: Ends = OPEN
@@ -167,10 +170,15 @@ class SpringSpec(Strict):
                 "spring.turns",
             )
 
+        try:
+            axis = self.axis.functions(self.turns) if self.axis else None
+        except ValueError as error:
+            raise InputError(str(error), "spring.axis") from error
+
         def spring(pitch: PiecewisePolynomial) -> Spring:
             height = self._pitch_with_ends(pitch, wire, radius, section).antiderivative()
             hand, ends = 1 if self.hand == "right" else -1, bottom_and_top(self.end_coils)
-            return Spring(radius, height, wire, hand, *ends, section=section)
+            return Spring(radius, height, wire, hand, *ends, section=section, axis=axis)
 
         if self.initial_tension is not None:
             return self._refuse(spring(wire), wound_solid=True)

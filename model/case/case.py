@@ -20,6 +20,7 @@ from coilset.model.case.limits import AnyLimit
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
+from coilset.model.case.sheet import SheetSpec
 from coilset.model.case.working import WorkingSpec
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
@@ -216,14 +217,19 @@ Material = Annotated[
 """A material by its name or file, or a wire by its name."""
 
 
+PER_CENT = r"\d*\.?\d+(e-?\d+)?"  # a number without a sign
+
+
 def _fraction(value: Any) -> Any:
     """0.002 of `0.2 %`; anything else as it is."""
     number = value.removesuffix("%").strip() if isinstance(value, str) and value.endswith("%") else ""
-    return float(number) / 100.0 if re.fullmatch(r"\d*\.?\d+(e-?\d+)?", number) else value
+    return float(number) / 100.0 if re.fullmatch(PER_CENT, number) else value
 
 
-Part = Annotated[float, BeforeValidator(_fraction)]
-"""A part of one, as a number or in per cent."""
+Below1 = Annotated[float, Field(gt=0, lt=1)]
+InPerCent = Annotated[str, Field(pattern=rf"^{PER_CENT}\s*%$")]
+Part = Annotated[Below1, BeforeValidator(_fraction, json_schema_input_type=Below1 | InPerCent)]
+"""A part of one, above 0 and below, as a number or in per cent."""
 
 
 class Case(Strict):
@@ -260,7 +266,7 @@ class Case(Strict):
         Field(description="where the heat of plastic work flows; left out: it stays where it is produced"),
     ] = None
     accuracy: Annotated[
-        Annotated[Literal["none"], Tag("(word)")] | Annotated[Part, Unit("1"), Field(gt=0, lt=1), Tag("(part)")],
+        Annotated[Literal["none"], Tag("(word)")] | Annotated[Part, Unit("1"), Tag("(part)")],
         Discriminator(lambda value: "(word)" if value == "none" else "(part)"),
         Field(
             description="allowed error of force and set, and of the force by automatic steps, relative to the maximum "
@@ -295,6 +301,10 @@ class Case(Strict):
     force_line: Annotated[
         ForceLineSpec | None,
         Field(description="planes that the force line crosses, and a damper; left out: seats.csv has no such numbers"),
+    ] = None
+
+    sheet: Annotated[
+        SheetSpec | None, Field(description="head of the data sheet by `coilset sheet --out sheet.pdf`")
     ] = None
 
     @model_validator(mode="before")

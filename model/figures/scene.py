@@ -19,6 +19,7 @@ MOST_SPRINGS = 4  # side by side
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
 LABELS, BAR = 100, 130  # pixels above the springs and below them
 COLUMN = 320  # pixels per label
+LINE = 0.012  # radius of the force line over the width of the spring
 ABOVE = 0.22  # tangent of the angle of view above the horizontal
 
 
@@ -86,6 +87,9 @@ def springs(path: str | Path, run: Run) -> None:
             half = (place * view.column, 0.0, 0.5 * (low + high))
             rod = pv.Cylinder(center=half, direction=(0, 0, 1), radius=0.5 * arbor, height=1.1 * (high - low))
             plotter.add_mesh(rod, color="lightgrey", smooth_shading=True, split_sharp_edges=True)
+        ends = force_line(run, number)
+        if ends is not None:
+            plotter.add_mesh(pv.Tube(*([*ends, place * view.column, 0.0, 0.0]), radius=LINE * across), color="black")
         places, stress = closed(*(one[None] for one in wires[place]))
         mesh = pv.StructuredGrid(*np.moveaxis(places[0] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
         mesh[name] = stress[0].ravel(order="F")
@@ -117,6 +121,20 @@ def springs(path: str | Path, run: Run) -> None:
             plotter.screenshot(str(partial))
     finally:
         plotter.close()
+
+
+def force_line(run: Run, number: int) -> np.ndarray | None:
+    """Both ends of the force line at a snapshot, at the seats, shape (2, 3), mm; None without `force_line` or force."""
+    last = np.flatnonzero(run.data["phase"].values == number - 1)
+    if run.case.get("force_line") is None or not len(last):
+        return None
+    heights = 0.0, float(run.data["seat_height_mm"].values[last[-1]])
+    ends = [
+        [float(run.data[f"{end}_{of}_{name}_mm"].values[last[-1]]) for of in ("shift", "centre") for name in "xy"]
+        for end in ("bottom", "top")
+    ]
+    found = np.array([[x + ex, y + ey, z] for (x, y, ex, ey), z in zip(ends, heights, strict=True)])
+    return found if np.isfinite(found).all() else None
 
 
 def caption(run: Run, number: int) -> str:

@@ -109,6 +109,10 @@ class SliceAnalysis:
         for entry in case.past:
             problem = f"a slice begins free of stress; leave '{entry}' out, or use 'coilset solve'"
             raise InputError(problem, f"spring.{entry}")
+        if self.spring.has_tails or self.spring.axis is not None:
+            raise InputError(
+                "a slice is of a coil about a straight axis without hooks or arms; use 'coilset solve'", "spring"
+            )
         self._check_targets()
         self.law = case_law(case, self.spring)
         outline = outline or _wire(case)

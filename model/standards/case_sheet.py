@@ -32,7 +32,7 @@ def case_sheet(
         spring: its geometry.
         run: results of a run of it, if there is one.
         wire_name: standard wire; None takes the case's, if it names one.
-        lengths: working lengths, mm; if empty, those that the load program goes to.
+        lengths: working lengths, mm; if empty, those of the case, or else those that the load program goes to.
         grade, surface, dynamic: see Sheet.
 
     Raises:
@@ -72,5 +72,9 @@ def case_sheet(
         return made
     if made.pulled:
         return replace(made, lengths=tuple(pulled_lengths(case, spring)))
+    if case.working:
+        of_forces = [cylinder.length - force / made.rate for force in case.working.forces]
+        given = (*case.working.lengths, *of_forces)
+        return replace(made, lengths=tuple(one for one in given if cylinder.solid < one < cylinder.length))
     planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
     return replace(made, lengths=tuple(planned))

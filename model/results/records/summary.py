@@ -17,10 +17,12 @@ from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
 from coilset.model.results.records.releases import Release, is_turned, releases
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
-from coilset.model.results.records.working import WorkingState, plastic_rise, working_numbers
+from coilset.model.results.records.working import LINE, WorkingState, plastic_rise, working_numbers
 from coilset.model.section import surface
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
+
+CROSSINGS = tuple(name for name in LINE if name.startswith("line_"))
 
 
 def summarise(setup: Setup, result: Result) -> dict[str, Any]:
@@ -285,6 +287,7 @@ def _entry(setup: Setup, result: Result, state: WorkingState) -> dict[str, Any]:
         "top_centre_x_mm": _known(seats.top.centre_x_mm),
         "top_centre_y_mm": _known(seats.top.centre_y_mm),
         "side_force_N": seats.side_force_N,
+        **({} if setup.force_line is None else {f"{one}_mm": _known(getattr(seats, f"{one}_mm")) for one in CROSSINGS}),
     }
 
 
