@@ -60,6 +60,7 @@ from coilset.model.runtime.threads import usual
 from coilset.model.sweep.study import Study as _Study
 
 if TYPE_CHECKING:
+    from coilset.model.vibration.driven import Surge
     from coilset.model.vibration.modes import Modes
 
 __all__ = [
@@ -79,6 +80,7 @@ __all__ = [
     "modes",
     "slice_",
     "solve",
+    "surge",
     "sweep",
 ]
 
@@ -444,10 +446,49 @@ def modes(run: Case | str | Path, at: str = "end", count: int = 10, glued: bool 
     >>> print(f"{modes(case, count=1).frequencies[0]:.0f} Hz")
     427 Hz
     """
-    from coilset.model.vibration.loaded import after_results, after_run, loaded_modes
+    from coilset.model.vibration.loaded import after_results, after_run
+    from coilset.model.vibration.modes import loaded_modes
 
     analysis = after_run(run._case, at) if isinstance(run, Case) else after_results(run, at)
     return loaded_modes(analysis, count, glued)
+
+
+def surge(
+    run: Case | str | Path,
+    height: Callable[[float], float],
+    seconds: float,
+    step: float,
+    spectral_radius: float = 0.8,
+) -> "Surge":
+    """Drive the top head of a spring over time, from rest at the end of its load program; collective.
+
+    The mass of the wire takes part; yield, contact and friction are as in `solve`. Nothing damps but these and the
+    method, which is implicit and of second order in the step (generalised-α).
+
+    Args:
+        run: a Case, whose load program is run, or a results folder of `coilset solve` with its checkpoint.
+        height: between the heads or seats, mm, at a time, s; it should begin where the load program ends.
+        seconds: duration; step: of time, s.
+        spectral_radius: what a step leaves of an oscillation that it does not resolve; 1: all of it.
+
+    Returns:
+        Surge over time: `height`, forces `top` and `bottom`, `level` of the wire's stations, `contacts` and energies,
+        and `force_error` from a second run with steps twice as long.
+
+    Raises:
+        InputError: there is no such run, or a number has no meaning.
+        SolveError: no equilibrium was found.
+
+    >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}, steps: 2}]", "accuracy=none"])
+    >>> ringing = surge(case, lambda time: 30.0 - 500.0 * time, 0.001, 0.0005)  # at 0.5 m/s
+    >>> print(f"{ringing.height[-1]:.1f} mm")
+    29.5 mm
+    """
+    from coilset.model.vibration.driven import surge as drive
+    from coilset.model.vibration.loaded import after_results, after_run
+
+    analysis = after_run(run._case) if isinstance(run, Case) else after_results(run)
+    return drive(analysis, height, seconds, step, spectral_radius)
 
 
 def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwrite: bool = False) -> xr.Dataset:

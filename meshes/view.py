@@ -19,7 +19,8 @@ def tube(spring: Spring, sides: int = 32) -> pv.PolyData:
         spring: `Spring`.
         sides: number of corners of the cross-section.
     """
-    turns = np.linspace(0.0, spring.turns, int(np.ceil(STATIONS_PER_TURN * spring.turns)) + 1)
+    first, last = spring.corners[[0, -1]]
+    turns = np.linspace(first, last, int(np.ceil(STATIONS_PER_TURN * (last - first))) + 1)
     if spring.section is not None:
         return _cut(_outlined(spring, spring.section, turns), spring)
     line = pv.PolyData(spring.centre_line(turns), lines=[len(turns), *range(len(turns))])

@@ -10,7 +10,7 @@ from coilset.model.runtime.processes import number_of_ranks, usable_cores
 from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, STAGES, announce_compiling, compile_first
 from coilset.scripts.startup import announce_begin, load_for_solve, typer
-from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target
+from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target, sheet_targets
 
 HELP = """How far does a coil spring set, and what stress remains in it?
 
@@ -37,6 +37,13 @@ class Engine(StrEnum):
     dask = "dask"
 
 
+class Language(StrEnum):
+    """Of a data sheet."""
+
+    en = "en"
+    de = "de"
+
+
 THREADS = typer.Option(
     None, min=1, envvar="COILSET_THREADS", help="threads [default: as many as cores, on several ranks one for each]"
 )
@@ -53,7 +60,9 @@ def _show_version(wanted: bool) -> None:
 @app.callback()
 def options(
     context: typer.Context,
-    ranks: int = typer.Option(1, "-n", min=1, metavar="RANKS", help="run solve, sweep or python on several MPI ranks"),
+    ranks: int = typer.Option(
+        1, "-n", min=1, metavar="RANKS", help="run solve, solid, sweep or python on several MPI ranks"
+    ),
     version: bool = typer.Option(False, "--version", is_eager=True, callback=_show_version, help="print versions"),
 ) -> None:
     """Options before the command."""
@@ -139,6 +148,23 @@ def slice_(
 
 
 @app.command()
+def solid(
+    case: str = typer.Argument(help="case file (YAML) of a cylindrical spring of round wire"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE-solid]"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
+    turns: float = typer.Option(1.0, help="turns of the solid, 1 to 5"),
+    across: int = typer.Option(None, min=1, max=12, help="elements along a side of the wire's core [default: 2]"),
+    layers: int = typer.Option(24, min=4, max=400, help="elements round a turn"),
+    pictures: bool = typer.Option(True, help="draw the figures"),
+) -> None:
+    """Solve some turns of a cylindrical spring as a 3D solid, and as a rod beside it, and write the results."""
+    from coilset.scripts.commands.solid import solid_case
+
+    solid_case(case, out, force, settings, turns, across, layers, pictures)
+
+
+@app.command()
 def nest(
     file: str = typer.Argument(help="nest file (YAML): two case files, and the heights of their common seats"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-FILE]"),
@@ -181,9 +207,13 @@ def sheet(
     grade: int = typer.Option(2, min=1, max=3, help="quality grade of EN 15800"),
     surface: str = typer.Option("as coiled", help='"as coiled" or "shot peened", for the fatigue limits'),
     dynamic: bool = typer.Option(False, "--dynamic", help="cyclic load: larger minimum gaps between the coils"),
-    out: str = typer.Option(
-        None, callback=folder_target, help="folder for the Goodman diagram [default: results/NAME-OF-CASE]"
+    out: list[str] = typer.Option(
+        [],
+        callback=sheet_targets,
+        help="sheet.html, .pdf, .csv or .dxf, or the folder of the Goodman diagram; may be given several times "
+        "[default: results/NAME-OF-CASE]",
     ),
+    language: Language = typer.Option("en", help="of the files: en or de"),
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite an existing figure"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     wires: bool = typer.Option(False, "--wires", help="list the standard wires, or all numbers of --wire"),
@@ -195,7 +225,9 @@ def sheet(
     if wires:
         sheets.list_wires(wire)
     else:
-        sheets.sheet(case, results, wire, length, grade, surface, dynamic, out, force, settings, pictures)
+        sheets.sheet(
+            case, results, wire, length, grade, surface, dynamic, out, language.value, force, settings, pictures
+        )
 
 
 @app.command()

@@ -19,7 +19,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.runtime.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
 from coilset.scripts.interrupt import INTERRUPTED
 
-PARALLEL = ("solve", "sweep", "python")
+PARALLEL = ("solve", "solid", "sweep", "python")
 RANKS_A_CORE = 4
 OUTPUT_CLOSED = 128 + signal.SIGPIPE
 OWN = (0, 2, 3, INTERRUPTED, OUTPUT_CLOSED)  # exit codes with a message of ours

@@ -34,7 +34,7 @@ class Mandrel(Contact):
 
 spring = {"wire_diameter": 2.0, "mean_diameter": 20.0, "turns": 24, "pitch": 8.0}
 mesh = {"elements_per_turn": 8, "section": {"radial": 2, "angular": 8}}
-loading = [{"to": {"travel": 60.0}, "steps": 12}]
+loading = [{"to": {"travel": 60.0}, "steps": 6}]
 case = Case(
     {"spring": spring, "material": "elastic", "ends": "clamped", "mesh": mesh, "loading": loading}
     | {"accuracy": "none"}

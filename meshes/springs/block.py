@@ -33,7 +33,7 @@ def block_height(spring: "Spring") -> float:
 
 
 def _each_on_the_next(spring: "Spring") -> float:
-    ends = spring.free_length - (spring.height(spring.turns) - spring.height(0.0))
+    ends = spring.body_length - (spring.height(spring.turns) - spring.height(0.0))
     n = spring.turns
     if n <= 1.0:  # no coil has a next one; the pitch of a coil that goes on
         mean = 0.5 * (spring.wire(0.0) + spring.wire(n))
@@ -43,7 +43,7 @@ def _each_on_the_next(spring: "Spring") -> float:
         """From each turn t ≤ n − 1 to the next where the two touch, mm."""
         t = np.asarray(turn, dtype=float)
         wire = 0.5 * (spring.wire(t) + spring.wire(t + 1.0))
-        return touching_pitch(wire, spring.radius(t + 1.0) - spring.radius(t), spring.section)
+        return touching_pitch(wire, spring.aside(t, t + 1.0), spring.section)
 
     marks = np.unique(np.concatenate([spring.breaks, spring.breaks - 1.0]))  # of r and d at t, and at t + 1
     inside = marks[(marks > 0.0) & (marks < n - 1.0)]
@@ -57,10 +57,10 @@ def _highest_stack(spring: "Spring") -> float:
     t = np.arange(int(spring.turns) + 1)[:, None] + meridians
     there = t <= spring.turns
     t = np.minimum(t, spring.turns)
-    r, d = spring.mean_radius(t), spring.wire_diameter(t)
+    d = spring.wire_diameter(t)
     level = spring.seat_distance(t, "bottom")
     for i in range(1, len(t)):
-        rise = touching_pitch(0.5 * (d[:i] + d[i]), r[i] - r[:i], spring.section)
+        rise = touching_pitch(0.5 * (d[:i] + d[i]), spring.aside(t[:i], t[i]), spring.section)
         resting = np.where(rise > 0.0, level[:i] + rise, -np.inf)
         level[i] = np.maximum(level[i], resting.max(axis=0))
     return float(np.where(there, level + spring.seat_distance(t, "top"), 0.0).max())

@@ -56,7 +56,7 @@ def coil_distances(spring: "Spring") -> tuple[np.ndarray, np.ndarray, np.ndarray
     if spring.turns > 1:
         low = np.append(low, spring.turns - 1)
     up = low + 1
-    aside, rise = spring.mean_radius(up) - spring.mean_radius(low), spring.height(up) - spring.height(low)
+    aside, rise = spring.aside(low, up), spring.height(up) - spring.height(low)
     wire = 0.5 * (spring.wire_diameter(up) + spring.wire_diameter(low))
     if spring.section is None:
         return low, np.hypot(aside, rise), wire

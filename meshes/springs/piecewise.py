@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cached_property
-from math import prod
+from math import factorial, prod
 
 import numpy as np
 
@@ -29,6 +29,28 @@ class PiecewisePolynomial:
             return np.asarray(_values(self._terms[:, 0], x - self.x[0]))
         piece = np.searchsorted(self.x[1:-1], x, side="right")  # the outer ones go on beyond their ends
         return np.asarray(_values(self._terms[:, piece], x - self.x[piece]))
+
+    def __mul__(self, factor: float) -> "PiecewisePolynomial":
+        return PiecewisePolynomial(factor * self.c, self.x)
+
+    def __sub__(self, other: "PiecewisePolynomial") -> "PiecewisePolynomial":
+        """The difference, on the pieces of both."""
+        breaks = np.unique(np.concatenate([self.x, other.x]))
+        ours, theirs = self._on(breaks), other._on(breaks)
+        degree = max(len(ours), len(theirs))
+        first, second = (np.pad(c, ((degree - len(c), 0), (0, 0))) for c in (ours, theirs))
+        return PiecewisePolynomial(first - second, breaks)
+
+    def _on(self, breaks: np.ndarray) -> np.ndarray:
+        """Coefficients on finer pieces: cₖ = f⁽ᵏ⁾/k! at the left end of each."""
+        inside = 0.5 * (breaks[1:] + breaks[:-1])  # a piece's own, not its neighbour's
+        piece = np.clip(np.searchsorted(self.x, inside, side="right") - 1, 0, len(self.x) - 2)
+        offset, degree = breaks[:-1] - self.x[piece], len(self.c) - 1
+        found = []
+        for order in range(degree, -1, -1):
+            c = self.derivative(order).c[:, piece]
+            found.append(_values(c, offset) / factorial(order))
+        return np.array(found)
 
     @cached_property
     def _terms(self) -> np.ndarray:

@@ -57,6 +57,31 @@ class Table(Strict):
         return functions.tabulated(np.array([*self.turns[:-1], turns]), np.array(self.values), self.interpolation)
 
 
+class Offsets(Table):
+    """Displacements of the coil's centre at selected turns, the first at turn 0 and the last at the last turn."""
+
+    values: Annotated[
+        tuple[Annotated[float, Unit("mm"), Field(ge=-LONGEST, le=LONGEST, strict=True)], ...],
+        Field(strict=False, min_length=2, description="displacement from the straight axis at these turns, mm"),
+    ]
+    interpolation: Annotated[
+        Literal["monotone", "spline"],
+        Field(description="monotone (cubic without overshoot, smooth slope); spline (cubic, smooth curvature)"),
+    ] = "spline"
+
+
+class CurvedAxis(Strict):
+    """The axis of a spring that is wound with a bow, as those of wheel suspensions: C- or S-shaped."""
+
+    x: Annotated[Offsets | None, Field(description="offset along x")] = None
+    y: Annotated[Offsets | None, Field(description="offset along y")] = None
+
+    def functions(self, turns: float) -> tuple[PiecewisePolynomial, PiecewisePolynomial]:
+        """Both offsets over the turn, mm; raises ValueError if one does not end at the last turn."""
+        x, y = (functions.constant(0.0, turns) if one is None else one.function(turns) for one in (self.x, self.y))
+        return x, y
+
+
 class Cylinder(Strict):
     """The same diameter at every turn."""
 

@@ -1,6 +1,7 @@
 """The `spring:` section of the case file, and the geometry built from it."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -16,8 +17,9 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.measured import MeasuredSpec
 from coilset.meshes.springs.past import Peening, Relief
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
-from coilset.meshes.springs.shapes import DiameterProfile, Length, Profile, profile_function
+from coilset.meshes.springs.shapes import CurvedAxis, DiameterProfile, Length, Profile, profile_function
 from coilset.meshes.springs.wire import WireSpec
+from coilset.meshes.tails import Arms, Hooks, tail
 from coilset.model.base.errors import InputError
 from coilset.model.base.schema import Strict
 
@@ -60,6 +62,9 @@ class SpringSpec(Strict):
     free_length: Annotated[
         Length | None, Field(description="outer length of the unloaded spring, mm; or give pitch")
     ] = None
+    axis: Annotated[
+        CurvedAxis | None, Field(description="offsets of the coil's centre over the turns; left out: a straight axis")
+    ] = None
     hand: Annotated[Literal["right", "left"], Field(description="direction of the helix")] = "right"
     end_coils: Ends = OPEN
     made_by: Annotated[
@@ -83,6 +88,12 @@ class SpringSpec(Strict):
     ] = None
     peening: Annotated[
         Peening | None, Field(description="shot peening of the wire, before the first load; left out: none")
+    ] = None
+    hooks: Annotated[
+        Hooks | None, Field(description="hooks of an extension spring, by which it is pulled; left out: none")
+    ] = None
+    arms: Annotated[
+        Arms | None, Field(description="arms of a torsion spring, at whose ends it is held and turned; left out: none")
     ] = None
 
     @model_validator(mode="after")
@@ -108,6 +119,19 @@ class SpringSpec(Strict):
     def _relief_belongs(self) -> Self:
         if self.relieved and not self.made_by:
             raise ValueError("there is no stress to relieve; give made_by: coiling, or leave relieved out")
+        return self
+
+    @model_validator(mode="after")
+    def _tails_belong(self) -> Self:
+        if self.hooks is None and self.arms is None:
+            return self
+        name = "arms" if self.hooks is None else "hooks"
+        if self.hooks is not None and self.arms is not None:
+            raise ValueError("hooks are those of an extension spring, arms those of a torsion spring; leave one out")
+        if self.wire is not None:
+            raise ValueError(f"{name} are of round wire; leave them out, or wire")
+        if self.end_coils != OPEN:
+            raise ValueError(f"{name} go on from open ends; leave end_coils out")
         return self
 
     @property
@@ -146,10 +170,15 @@ class SpringSpec(Strict):
                 "spring.turns",
             )
 
+        try:
+            axis = self.axis.functions(self.turns) if self.axis else None
+        except ValueError as error:
+            raise InputError(str(error), "spring.axis") from error
+
         def spring(pitch: PiecewisePolynomial) -> Spring:
             height = self._pitch_with_ends(pitch, wire, radius, section).antiderivative()
             hand, ends = 1 if self.hand == "right" else -1, bottom_and_top(self.end_coils)
-            return Spring(radius, height, wire, hand, *ends, section=section)
+            return Spring(radius, height, wire, hand, *ends, section=section, axis=axis)
 
         if self.initial_tension is not None:
             return self._refuse(spring(wire), wound_solid=True)
@@ -167,10 +196,23 @@ class SpringSpec(Strict):
     def _refuse(self, spring: Spring, wound_solid: bool = False) -> Spring:
         """Reject impossible springs; faults of the diameter are reported at the entry that gives it."""
         try:
-            return refuse(spring, wound_solid=wound_solid)
+            return self._with_tails(refuse(spring, wound_solid=wound_solid))
         except InputError as error:
             place = error.place.replace("mean_diameter", self.diameter_entry)
             raise InputError(error.problem, place, error.file) from None
+
+    def _with_tails(self, spring: Spring) -> Spring:
+        """The spring with its hooks or arms."""
+        entry = self.hooks or self.arms
+        if entry is None:
+            return spring
+        name, tails = "hooks" if self.hooks else "arms", []
+        for end, turn, side in (("bottom", 0.0, -1.0), ("top", spring.turns, 1.0)):
+            one = getattr(entry, end)
+            at = spring.centre_line(turn), side * spring.tangent(turn), np.array([0.0, 0.0, side])
+            diameter, place = float(spring.wire_diameter(turn)), f"spring.{name}.{end}"
+            tails.append(None if one is None else tail(one, *at, diameter, place))
+        return replace(spring, tails=(tails[0], tails[1]))
 
     def _wire(self) -> tuple[Boundary | None, PiecewisePolynomial]:
         """The section of a wire that is not round, and the height or diameter of any wire over the turns, mm."""

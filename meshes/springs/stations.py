@@ -1,5 +1,6 @@
 """Positions of the nodes of a line mesh along the wire."""
 
+from itertools import pairwise
 from typing import Annotated, Protocol
 
 import numpy as np
@@ -32,6 +33,10 @@ class CentreLine(Protocol):
     def breaks(self) -> np.ndarray:
         """Turns at which some function of the spring is not smooth, including the first and the last."""
 
+    @property
+    def corners(self) -> np.ndarray:
+        """Turns where the coil or a piece of a hook or arm ends."""
+
     def speed(self, t: np.ndarray) -> np.ndarray:
         """Length of wire per turn, mm."""
 
@@ -43,7 +48,8 @@ def stations(spring: CentreLine, elements_per_turn: ElementsPerTurn = 16, sagitt
     """Turns at which the nodes are.
 
     The number of elements per turn is a density over the turn; its integral, rounded up, is the number of elements,
-    and every element has an equal share of it.
+    and every element has an equal share of it. Each piece of a hook or arm has as many elements as the end of the coil
+    has over its length, or over its angle if that is more.
 
     Args:
         spring: its centre line.
@@ -51,7 +57,7 @@ def stations(spring: CentreLine, elements_per_turn: ElementsPerTurn = 16, sagitt
         sagitta: if given, elements are also short enough that their chord deviates no more than this, mm, from the arc.
 
     Returns:
-        Increasing turns from 0 to the last turn, shape (elements + 1,).
+        Increasing turns from tip to tip, shape (elements + 1,).
 
     Raises:
         InputError: a table that does not end at the last turn, or too few or too many elements per turn.
@@ -66,10 +72,11 @@ def stations(spring: CentreLine, elements_per_turn: ElementsPerTurn = 16, sagitt
         raise InputError(str(error), "mesh.elements_per_turn") from None
 
     def density(t: np.ndarray) -> np.ndarray:
+        of_coil = given(np.clip(t, 0.0, spring.turns))
         if sagitta is None:
-            return given(t)
+            return of_coil
         # sagitta = κ h²/8 with the element length h
-        return np.maximum(given(t), spring.speed(t) * np.sqrt(spring.curvature(t) / (8 * sagitta)))
+        return np.maximum(of_coil, spring.speed(t) * np.sqrt(spring.curvature(t) / (8 * sagitta)))
 
     breaks = np.unique(np.concatenate([spring.breaks, given.x]))
     densities = density(breaks)
@@ -82,5 +89,17 @@ def stations(spring: CentreLine, elements_per_turn: ElementsPerTurn = 16, sagitt
         raise InputError(f"{count[-1]:.4g} elements; must be {ALL:,} at most", "mesh")
     elements = int(np.ceil(count[-1] * (1 - 1e-9)))
     if np.ptp(densities) == 0:
-        return np.linspace(0.0, spring.turns, elements + 1)
-    return np.interp(np.linspace(0.0, count[-1], elements + 1), count, breaks)
+        coil = np.linspace(0.0, spring.turns, elements + 1)
+    else:
+        coil = np.interp(np.linspace(0.0, count[-1], elements + 1), count, breaks)
+
+    def of_piece(start: float, end: float) -> np.ndarray:
+        """All turns but the last."""
+        middle = np.array([0.5 * (start + end)])
+        over_angle = spring.speed(middle) * spring.curvature(middle) / (2.0 * np.pi)
+        most = density(middle) * np.maximum(1.0, over_angle)
+        return np.linspace(start, end, int(np.ceil((end - start) * most[0] - 1e-9)) + 1)[:-1]
+
+    below, above = (spring.corners[there] for there in (spring.corners <= 0.0, spring.corners >= spring.turns))
+    bottom, top = ([of_piece(*pair) for pair in pairwise(corners.tolist())] for corners in (below, above))
+    return np.concatenate([*bottom, coil[:-1], *top, above[-1:]])

@@ -40,7 +40,8 @@ def unghosted() -> Callable:
 
 def to_ranks(ranks: np.ndarray) -> Any:
     """The result of a partitioner: the rank of each cell, shape (cells,); 0.10 renamed and wrapped it."""
-    make = getattr(dolfinx.graph, "adjacencylist", None) or dolfinx.graph.adjacency_list
+    graph: Any = dolfinx.graph
+    make = getattr(graph, "adjacencylist", None) or graph.adjacency_list
     found = make(ranks.astype(np.int32)[:, None])
     return getattr(found, "_cpp_object", found)
 

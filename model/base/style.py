@@ -12,6 +12,8 @@ FILE = Path(__file__).parent / "coilset.mplstyle"
 STYLE = mpl.rc_params_from_file(str(FILE), use_default_template=False)
 DIVERGING = "RdBu_r"
 """Map of values with a sign, red where positive."""
+SEQUENTIAL = "viridis"
+"""Map of values without a sign."""
 ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # ends of a scale
 QUARTERED = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)  # ends of a scale whose quarters have few digits
 

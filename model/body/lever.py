@@ -51,7 +51,7 @@ class Lever:
 
     Attributes:
         swing: trial Swing.
-        force: of the cells on the node, kept for the tangent, shape (3,), N.
+        forces: of the cells on the node, by their numbers, kept for the tangent, shape (3,) each, N.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class Lever:
             (int(cell), _places(elements[cell], u), _places(elements[cell], rotations))
             for cell in np.flatnonzero((cells == node).any(axis=1))
         ]
-        self.swing, self.force = Swing.of(np.zeros(3), arm), np.zeros(3)
+        self.swing, self.forces = Swing.of(np.zeros(3), arm), dict[int, np.ndarray]()
 
     def carry(self, increments: np.ndarray, R: np.ndarray) -> None:
         """Replace the head's increments by the node's; `R`: rotation of the node at the last equilibrium."""
@@ -85,9 +85,9 @@ class Lever:
             forces[cell, rotations] += self.swing.of_force(forces[cell, u])[0]
 
     def keep_force(self, cells: slice, forces: np.ndarray) -> None:
-        """Keep the force of cells on the node, shape (cells, k), for `carry_tangents`."""
+        """Keep the forces of cells on the node, shape (cells, k), for `carry_tangents`."""
         for cell, u, _ in self._within(cells):
-            self.force = forces[cell, u].copy()
+            self.forces[cells.start + cell] = forces[cell, u].copy()
 
     def carry_tangents(self, cells: slice, K: np.ndarray) -> None:
         """Replace tangents of cells by the node's unknowns by those by the head's, shape (cells, k, k)."""
@@ -95,7 +95,7 @@ class Lever:
             X, one = self.swing.first, K[cell]
             one[rotations] += X.T @ one[u]
             one[:, rotations] += one[:, u] @ X
-            one[np.ix_(rotations, rotations)] += self.swing.of_force(self.force)[1]
+            one[np.ix_(rotations, rotations)] += self.swing.of_force(self.forces[cells.start + cell])[1]
 
     def _within(self, cells: slice) -> list[tuple[int, np.ndarray, np.ndarray]]:
         return [(cell - cells.start, u, r) for cell, u, r in self._cells if cells.start <= cell < cells.stop]

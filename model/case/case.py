@@ -20,6 +20,7 @@ from coilset.model.case.limits import AnyLimit
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
+from coilset.model.case.sheet import SheetSpec
 from coilset.model.case.working import WorkingSpec
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
@@ -44,7 +45,7 @@ class SectionSpec(Strict):
             description="whether stress rotates with the material relative to the section, as in the thesis (5.2.33)"
         ),
     ] = False
-    degree: Annotated[Whole, Field(ge=1, le=7, description="degree of the polynomials of a warping section")] = 3
+    degree: Annotated[Whole, Field(ge=1, le=9, description="degree of the polynomials of a warping section")] = 3
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
@@ -216,14 +217,19 @@ Material = Annotated[
 """A material by its name or file, or a wire by its name."""
 
 
+PER_CENT = r"\d*\.?\d+(e-?\d+)?"  # a number without a sign
+
+
 def _fraction(value: Any) -> Any:
     """0.002 of `0.2 %`; anything else as it is."""
     number = value.removesuffix("%").strip() if isinstance(value, str) and value.endswith("%") else ""
-    return float(number) / 100.0 if re.fullmatch(r"\d*\.?\d+(e-?\d+)?", number) else value
+    return float(number) / 100.0 if re.fullmatch(PER_CENT, number) else value
 
 
-Part = Annotated[float, BeforeValidator(_fraction)]
-"""A part of one, as a number or in per cent."""
+Below1 = Annotated[float, Field(gt=0, lt=1)]
+InPerCent = Annotated[str, Field(pattern=rf"^{PER_CENT}\s*%$")]
+Part = Annotated[Below1, BeforeValidator(_fraction, json_schema_input_type=Below1 | InPerCent)]
+"""A part of one, above 0 and below, as a number or in per cent."""
 
 
 class Case(Strict):
@@ -260,7 +266,7 @@ class Case(Strict):
         Field(description="where the heat of plastic work flows; left out: it stays where it is produced"),
     ] = None
     accuracy: Annotated[
-        Annotated[Literal["none"], Tag("(word)")] | Annotated[Part, Unit("1"), Field(gt=0, lt=1), Tag("(part)")],
+        Annotated[Literal["none"], Tag("(word)")] | Annotated[Part, Unit("1"), Tag("(part)")],
         Discriminator(lambda value: "(word)" if value == "none" else "(part)"),
         Field(
             description="allowed error of force and set, and of the force by automatic steps, relative to the maximum "
@@ -297,6 +303,10 @@ class Case(Strict):
         Field(description="planes that the force line crosses, and a damper; left out: seats.csv has no such numbers"),
     ] = None
 
+    sheet: Annotated[
+        SheetSpec | None, Field(description="head of the data sheet by `coilset sheet --out sheet.pdf`")
+    ] = None
+
     @model_validator(mode="before")
     @classmethod
     def _accuracy_of_loading(cls, data: Any) -> Any:
@@ -330,7 +340,7 @@ class Case(Strict):
     def _heads_belong(self) -> Self:
         if self.ends == "seats" and self.heads != HeadsSpec():
             raise ValueError("heads are those of a clamped wire; give ends: clamped, or entries of seats")
-        holder: HeadsSpec | SeatsSpec = self.heads if self.ends == "clamped" else self.seats
+        holder: HeadsSpec | SeatsSpec = self.clamps if self.ends == "clamped" else self.seats
         given = {end: getattr(holder, end) for end in ("bottom", "top")}
         loose = {(end, name) for end, spec in given.items() for name in FREEDOMS if getattr(spec, name) == "free"}
         for number, phase in enumerate(self.loading):
@@ -397,6 +407,31 @@ class Case(Strict):
         if self.contact.friction.coils:
             raise ValueError("friction of coils on coils is for round wire; leave contact.friction.coils out")
         return self
+
+    @model_validator(mode="after")
+    def _tails_are_held(self) -> Self:
+        if self.ends == "seats" and self.tails:
+            raise ValueError(
+                f"spring.{self.tails}: seats press on coils, but these are held at their points; give ends: clamped"
+            )
+        return self
+
+    @property
+    def tails(self) -> str:
+        """Name of the entry of `spring` on wire beyond the coil, `hooks` or `arms`, or nothing."""
+        given = [name for name in ("hooks", "arms") if getattr(self.spring, name, None) is not None]
+        return given[0] if given else ""
+
+    @property
+    def clamps(self) -> HeadsSpec:
+        """How the heads of a clamped wire are held; hooks tilt at the point where they are pulled, unless `heads` says
+        otherwise."""
+        hooks = getattr(self.spring, "hooks", None)
+        given = {end: getattr(self.heads, end) for end in ("bottom", "top")}
+        for end, head in given.items():
+            if getattr(hooks, end, None) is not None and "tilt" not in head.model_fields_set:
+                given[end] = head.model_copy(update={"tilt": "free"})
+        return self.heads.model_copy(update=given)
 
     @property
     def targets(self) -> list[Phase]:

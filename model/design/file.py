@@ -69,7 +69,7 @@ Length = Annotated[Annotated[float, Unit("mm"), Positive, Tag("(value)")] | OrLi
 Force = Annotated[Annotated[float, Unit("N"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Rate = Annotated[Annotated[float, Unit("N/mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Work = Annotated[Annotated[float, Unit("N/mm²"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
-Size = Annotated[Annotated[float, Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+Size = Annotated[Annotated[float, AfterValidator(_not_zero), Tag("(value)")] | OrLimits, OR_LIMITS]
 Stress = Annotated[
     Annotated[float, Unit("MPa"), AfterValidator(_not_zero), Tag("(value)")] | OrLimits,
     OR_LIMITS,

@@ -55,7 +55,7 @@ class NewtonControl:
     search_trials: Count = 6
     bracket_margin: Fraction = 0.15
     backtrack: Fraction = 0.4
-    smallest_step_length: Fraction = 1e-3
+    smallest_step_length: Fraction = 0.05
     stress_backtrack: Fraction = 0.25
     free_penetration: Annotated[Positive, Unit("wire diameters")] | None = None
     penetration_growth: Growth = 1.5

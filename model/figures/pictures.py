@@ -11,7 +11,7 @@ def load_figures() -> Draw:
     """Load the libraries of the diagrams."""
     from functools import partial
 
-    from coilset.model.figures.panels import buckling, characteristic, fatigue, seats, section_map
+    from coilset.model.figures.panels import buckling, characteristic, fatigue, force_line, seats, section_map
     from coilset.model.figures.panels.panel import Panel
     from coilset.model.figures.png import write_png
     from coilset.model.results.files.opened import Run, open_run
@@ -20,6 +20,12 @@ def load_figures() -> Draw:
         "characteristic.png": [characteristic.characteristic],
         "cross_section.png": [section_map.shear_map, section_map.normal_map],
         "force_centre.png": [seats.force_centre, seats.eccentricity],
+        "force_line.png": [
+            force_line.side_view_x,
+            force_line.side_view_y,
+            force_line.view_along_axis,
+            force_line.side_force,
+        ],
         "seat_pressure.png": [partial(seats.contact, kinds="seat"), seats.contact_length, seats.active_turns],
         "fatigue.png": [fatigue.fatigue_map],
         "buckling_mode.png": [buckling.buckling_mode, buckling.buckling_axis],

@@ -8,8 +8,8 @@ import numpy as np
 import pyvista as pv
 import pyvista.plotting
 
-from coilset.model.base.style import DIVERGING, ROUND, round_end
-from coilset.model.figures.wire import closed, inside, outline, shear_around, surface
+from coilset.model.base.style import DIVERGING, ROUND, SEQUENTIAL, round_end
+from coilset.model.figures.wire import closed, coil_turns, inside, loading_stress, outline, surface
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
@@ -19,6 +19,7 @@ MOST_SPRINGS = 4  # side by side
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
 LABELS, BAR = 100, 130  # pixels above the springs and below them
 COLUMN = 320  # pixels per label
+LINE = 0.012  # radius of the force line over the width of the spring
 ABOVE = 0.22  # tangent of the angle of view above the horizontal
 
 
@@ -55,19 +56,19 @@ def chosen(force: np.ndarray) -> list[int]:
 
 
 def springs(path: str | Path, run: Run) -> None:
-    """Draw snapshots side by side, coloured by the shear stress about the wire's axis on its surface.
+    """Draw snapshots side by side, coloured by the stress that loads the wire most, `loading_stress`.
 
     Args:
         path: PNG to write.
         run: opened results.
     """
-    name = "shear stress on the surface in MPa, red with the load of compression"
+    name, loading = loading_stress(run)
     data, snapshots = run.data, chosen(run.data["force"].values)
     radius, positions = data["wire_radius"].values, data["position"].values[snapshots]
     rings = RINGS_PER_ELEMENT * len(radius) + 1
-    shears = shear_around(run)[snapshots].mean(axis=2)
+    shears = loading[snapshots].mean(axis=2)
     wires = [
-        surface(data["turn"].values, x, radius, shear, inside(run), rings, outline(run))
+        surface(data["turn"].values, x, radius, shear, inside(run), rings, outline(run), coil_turns(run))
         for x, shear in zip(positions, shears, strict=True)
     ]
     x = positions.reshape(-1, 3)
@@ -76,18 +77,27 @@ def springs(path: str | Path, run: Run) -> None:
     aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
     view = Arrangement.of(across, high - low, len(snapshots))
     end = round_end(max(float(np.abs(stress).max()) for _, stress in wires), ROUND)
+    signed = loading.min() < 0.0
     middle = aside + 0.5 * view.column * (len(snapshots) - 1)
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, view.height))
     plotter.set_background("white")
+    arbor = run.case.get("contact", {}).get("arbor")
     for place, number in enumerate(snapshots):
+        if arbor:
+            half = (place * view.column, 0.0, 0.5 * (low + high))
+            rod = pv.Cylinder(center=half, direction=(0, 0, 1), radius=0.5 * arbor, height=1.1 * (high - low))
+            plotter.add_mesh(rod, color="lightgrey", smooth_shading=True, split_sharp_edges=True)
+        ends = force_line(run, number)
+        if ends is not None:
+            plotter.add_mesh(pv.Tube(*([*ends, place * view.column, 0.0, 0.0]), radius=LINE * across), color="black")
         places, stress = closed(*(one[None] for one in wires[place]))
         mesh = pv.StructuredGrid(*np.moveaxis(places[0] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
         mesh[name] = stress[0].ravel(order="F")
         plotter.add_mesh(
             mesh,
             scalars=name,
-            clim=(-end, end),
-            cmap=DIVERGING,
+            clim=(-end if signed else 0.0, end),
+            cmap=DIVERGING if signed else SEQUENTIAL,
             smooth_shading=True,
             scalar_bar_args=_bar(view, name),
         )
@@ -111,6 +121,20 @@ def springs(path: str | Path, run: Run) -> None:
             plotter.screenshot(str(partial))
     finally:
         plotter.close()
+
+
+def force_line(run: Run, number: int) -> np.ndarray | None:
+    """Both ends of the force line at a snapshot, at the seats, shape (2, 3), mm; None without `force_line` or force."""
+    last = np.flatnonzero(run.data["phase"].values == number - 1)
+    if run.case.get("force_line") is None or not len(last):
+        return None
+    heights = 0.0, float(run.data["seat_height_mm"].values[last[-1]])
+    ends = [
+        [float(run.data[f"{end}_{of}_{name}_mm"].values[last[-1]]) for of in ("shift", "centre") for name in "xy"]
+        for end in ("bottom", "top")
+    ]
+    found = np.array([[x + ex, y + ey, z] for (x, y, ex, ey), z in zip(ends, heights, strict=True)])
+    return found if np.isfinite(found).all() else None
 
 
 def caption(run: Run, number: int) -> str:

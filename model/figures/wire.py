@@ -1,5 +1,6 @@
 """The wire as a tube: its surface in space, and the stress on it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,11 @@ from scipy.interpolate import CubicSpline
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
 from coilset.model.rod.elements import THESIS
+from coilset.model.rod.kinematics import chord_triads
+from coilset.model.section import surface as surface_values
 from coilset.model.section.surface import Inside
+
+STRAIGHT = 0.25  # of the coil's curvature: below it a piece of a hook or arm is straight
 
 
 def inside(run: Run) -> Inside:
@@ -30,6 +35,11 @@ def outline(run: Run) -> np.ndarray | None:
     return np.concatenate([corners, corners[:1]])
 
 
+def coil_turns(run: Run) -> float:
+    """Turns of the coil; hooks and arms are below 0 and above. Earlier runs have none."""
+    return float(run.data.attrs.get("coil_turns", np.inf))
+
+
 def shear_around(run: Run) -> np.ndarray:
     """Shear stress about the wire's axis on its surface, positive as in a compressed spring, MPa.
 
@@ -37,6 +47,19 @@ def shear_around(run: Run) -> np.ndarray:
         Shape (snapshots, elements, sections, angles); the angles are those of the data.
     """
     return inside(run).shear_around(run.data["surface"].values, tuple(map(str, run.data["component"].values)))
+
+
+def loading_stress(run: Run) -> tuple[str, np.ndarray]:
+    """What a load stresses most: the name of a stress on the surface, and its values as of `shear_around`, MPa.
+
+    Torsion springs are bent; hooks are bent and twisted; else the wire is twisted.
+    """
+    values, components = run.data["surface"].values, tuple(map(str, run.data["component"].values))
+    if run.summary.get("turn_max_deg") is not None:
+        return "stress along the wire in MPa, red in tension", surface_values.component(values, components, "s11")
+    if run.summary.get("tail_stress_max_MPa") is not None:
+        return "equivalent (von Mises) stress on the surface in MPa", surface_values.equivalent(values, components)
+    return "shear stress on the surface in MPa, red with the load of compression", shear_around(run)
 
 
 def section_turns(run: Run) -> np.ndarray:
@@ -109,7 +132,7 @@ def tubes(run: Run, shown: Frames, rings: int) -> tuple[np.ndarray, np.ndarray]:
     turn, radius = run.data["turn"].values, run.data["wire_radius"].values
     corners = outline(run)
     both = [
-        surface(turn, x, radius, shear, inside(run), rings, corners)
+        surface(turn, x, radius, shear, inside(run), rings, corners, coil_turns(run))
         for x, shear in zip(shown.x, shown.shear, strict=True)
     ]
     places, stress = (np.stack(one) for one in zip(*both, strict=True))
@@ -124,6 +147,7 @@ def surface(
     side: Inside,
     rings: int,
     corners: np.ndarray | None = None,
+    coil: float = np.inf,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Surface of the wire at one moment, and the stress there, as `tubes` gives them for several.
 
@@ -135,6 +159,7 @@ def surface(
         side: position of the inside of the coil.
         rings: along the wire.
         corners: `outline` of a wire that is not round.
+        coil: turns of the coil; what is below 0 or above are hooks or arms.
     """
     at = np.linspace(turn[0], turn[-1], rings)
     middle = 0.5 * (turn[1:] + turn[:-1])
@@ -144,7 +169,13 @@ def surface(
     else:
         closed_shear, around = np.column_stack([shear, shear[:, :1]]), np.arctan2(*corners[:-1].T[::-1]) % (2.0 * np.pi)
         shear = np.stack([np.interp(around, angle, row) for row in closed_shear])
-    places = _tube(CubicSpline(turn, x, axis=0), at, np.interp(at, middle, wire_radius), corners)
+    line = CubicSpline(turn, x, axis=0)
+    centre, *across = _directions(line, at, coil)
+    y, z = corners[..., None].swapaxes(0, 1)
+    ring = y * across[0][:, None] + z * across[1][:, None]
+    places = centre[:, None] + np.interp(at, middle, wire_radius)[:, None, None] * ring
+    if turn[0] < 0.0 or turn[-1] > coil:
+        shear = _turned_by(shear, _off_normal(line, middle, at, across, coil))
     along = np.clip(np.searchsorted(middle, at) - 1, 0, len(middle) - 2)
     part = np.clip((at - middle[along]) / (middle[along + 1] - middle[along]), 0.0, 1.0)[:, None]
     stress = (1.0 - part) * shear[along] + part * shear[along + 1]
@@ -164,25 +195,66 @@ def section_points(run: Run, snapshot: int) -> np.ndarray:
     """Positions of the section points in space at a snapshot, shape (elements, sections, points, 3), mm."""
     turn, at = run.data["turn"].values, section_turns(run)
     line = CubicSpline(turn, run.data["position"].values[snapshot], axis=0)
-    centre, inwards, binormal = (values.reshape(*at.shape, 1, 3) for values in _directions(line, at.ravel()))
+    centre, *across = _directions(line, at.ravel(), coil_turns(run))
+    off = _off_normal(line, at.ravel(), at.ravel(), across, coil_turns(run))[:, None]
+    inwards, binormal = (
+        np.cos(off) * across[0] + np.sin(off) * across[1],
+        np.cos(off) * across[1] - np.sin(off) * across[0],
+    )
+    centre, inwards, binormal = (values.reshape(*at.shape, 1, 3) for values in (centre, inwards, binormal))
     y, z = (run.data[name].values[..., None] for name in "yz")
     turned = np.cos(inside(run).angle)
     return centre + turned * (y * inwards + z * binormal)
 
 
-def _tube(line: CubicSpline, at: np.ndarray, radius: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Surface about a centre line, with corners y, z of the section in wire radii, shape (rings, corners, 3)."""
-    centre, inwards, binormal = _directions(line, at)
-    y, z = corners[..., None].swapaxes(0, 1)
-    ring = y * inwards[:, None] + z * binormal[:, None]
-    return centre[:, None] + radius[:, None, None] * ring
+def _directions(line: CubicSpline, at: np.ndarray, coil: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places on a centre line, and unit vectors across it: towards the spring's axis, and the binormal.
 
-
-def _directions(line: CubicSpline, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places on a centre line, and unit vectors across it: towards the spring's axis, and the binormal."""
+    Along hooks and arms the direction of the coil's end goes on without twist.
+    """
     centre, along = line(at), line(at, 1)
     along /= np.linalg.norm(along, axis=1)[:, None]
-    inwards = -centre * [1.0, 1.0, 0.0]
-    inwards -= np.sum(inwards * along, axis=1)[:, None] * along
-    inwards /= np.linalg.norm(inwards, axis=1)[:, None]
+    inwards = _across(-centre * [1.0, 1.0, 0.0], along)
+    inside = np.flatnonzero((at >= 0.0) & (at <= coil))
+    for k in range(inside[0] - 1, -1, -1):
+        inwards[k] = _across(inwards[k + 1], along[k])
+    for k in range(inside[-1] + 1, len(at)):
+        inwards[k] = _across(inwards[k - 1], along[k])
     return centre, inwards, np.cross(along, inwards)
+
+
+def _across(vectors: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Unit vectors of the parts of vectors across unit vectors `along`, shape (..., 3) each."""
+    across: np.ndarray = vectors - np.sum(vectors * along, axis=-1, keepdims=True) * along
+    across /= np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-300)
+    return across
+
+
+def _off_normal(
+    line: CubicSpline, turns: np.ndarray, at: np.ndarray, across: Sequence[np.ndarray], coil: float
+) -> np.ndarray:
+    """Angle about the wire from `_directions` to the y axis of sections, rad; 0 in the coil.
+
+    In bends of hooks and arms y is towards their centre; in straight pieces it is level, see `chord_triads`.
+
+    Args:
+        line: the centre line.
+        turns: of the sections, shape (n,).
+        at: turns of the directions; across: both of them, shape (m, 3) each.
+        coil: its turns.
+    """
+    along = line(turns, 1)
+    bend = np.cross(along, np.cross(line(turns, 2), along)) / np.sum(along**2, axis=1)[:, None] ** 2
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    curvature, beyond = np.linalg.norm(bend, axis=1), (turns < 0.0) | (turns > coil)
+    straight = curvature < STRAIGHT * np.median(curvature[~beyond])
+    y = np.where(straight[:, None], chord_triads(along)[..., 1], _across(bend, along))
+    first, second = (one[np.abs(at[:, None] - turns).argmin(axis=0)] for one in across)
+    return np.where(beyond, np.arctan2(np.sum(y * second, axis=1), np.sum(y * first, axis=1)), 0.0)
+
+
+def _turned_by(stress: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Stress at evenly spaced angles, shape (n, angles), turned about the wire by angles, rad, shape (n,)."""
+    places = 2.0 * np.pi * np.arange(stress.shape[-1]) / stress.shape[-1]
+    rows = zip(angle, stress, strict=True)
+    return np.stack([np.interp(places - by, places, row, period=2.0 * np.pi) for by, row in rows])

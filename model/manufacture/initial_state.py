@@ -197,7 +197,7 @@ def _through(
             tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
         if past.layer is not None:
             states = peen(past.law, rule, radius, curvature, sections.curved, states, past.layer, rim)
-        if past.tension:
+        if past.tension and torsion:  # hooks are plane, and not wound onto anything
             torque = winding_torque(past.tension, curvature, torsion)
             states = twist(past.law, rule, radius, curvature, sections.curved, states, torque, rim)
         if left is not None and len(states) > 1:

@@ -83,7 +83,18 @@ def _tension(s: Mapping[str, Any]) -> list[Number]:
     left = "" if after is None else f"{with_unit(after, 'N', 1)} after the last release"
     rate = with_unit(s["open_rate_N_per_mm"], "N/mm", 3)
     held = Number("initial tension", with_unit(s["initial_tension_N"], "N", 1), left)
-    return [held, Number("rate, coils open", rate)]
+    return [held, Number("rate, coils open", rate), *_beyond_coil(s, "hooks")]
+
+
+def _beyond_coil(s: Mapping[str, Any], name: str) -> list[Number]:
+    """The stress along the wire of hooks or arms, and what is left of it."""
+    stress, left = s.get("tail_stress_max_MPa"), s.get("residual_tail_stress_MPa")
+    if stress is None:
+        return []
+    words = ""
+    if left is not None and abs(left) >= 0.5:
+        words = f"{with_unit(left, 'MPa', 0)} after release, {'with' if left * stress > 0.0 else 'against'} the load"
+    return [Number(f"maximum stress along the wire, {name}", with_unit(stress, "MPa", 0), words)]
 
 
 def _turned(s: Mapping[str, Any]) -> list[Number]:
@@ -102,6 +113,7 @@ def _turned(s: Mapping[str, Any]) -> list[Number]:
         ),
         Number("rate", rate, "" if after is None else f"{with_unit(after, 'N mm/°', 3)} on release"),
         Number("inner diameter", with_unit(s["inner_diameter_min_mm"], "mm", 2), "smallest, for an arbor"),
+        *_beyond_coil(s, "arms"),
     ]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-REMARKS = {"estimate", "earlier name", "presetting", "measured axis"}
+REMARKS = {"elastic warping", "estimate", "earlier name", "presetting", "measured axis"}
 """Warnings that are no failed check."""
 LOAD, FORMULAS, WIRE = "load program", "gaps between the coils", "permissible stress"
 

@@ -9,6 +9,7 @@ KINDS = {
     "creep": "the load loss is extrapolated beyond the tests of creep",
     "duration": "the run takes long",
     "earlier name": "an entry has its earlier name",
+    "elastic warping": "the warping of a wire that is not round is that of elastic wire",
     "endurance": "the stress range exceeds the fatigue data",
     "estimate": "the hardening of the wire is an estimate from its tensile strength",
     "gap": "the gaps between the coils are smaller than the standard requires",

@@ -117,7 +117,7 @@ class Analysis:
         self.system = System(self.rod, self.layout, kinds, seats_at(spring.free_length))
         least_radius = float(wire.radius.min())
         self.newton = build_newton(case, self.system, least_radius)
-        self.control = build_control(case, spring, self.system)
+        self.control = build_control(case, spring, self.system, wire.turns)
         self.stability = Stability(self.newton.iteration)
         self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
         self.continuation.refusal = self._passed
@@ -204,6 +204,7 @@ class Analysis:
         outcome = self.continuation.attempt(self.control.to_force(0.0))
         if not outcome.converged:
             raise SolveError(f"the wound coils find no equilibrium without load: {outcome.reason}")
+        self.control.begin_here()
         self.program.begin(0)
 
     def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:
@@ -305,10 +306,11 @@ class Analysis:
         """
         x = self.system.state["x"]
         travel = self.continuation.control.probe * self.spring.free_length
-        before = np.ptp(self.layout.gather(x.equilibrium)[[0, -1], 2])
+        tips = [station for station, _ in self.control.tips.values()]
+        before = np.ptp(self.layout.gather(x.equilibrium)[tips, 2])
         outcome, (force, after) = self.continuation.probe(
             self.control.to_height(self.control.height - travel),
-            lambda: (self.control.trial_force, np.ptp(self.layout.gather(x.trial)[[0, -1], 2])),
+            lambda: (self.control.trial_force, np.ptp(self.layout.gather(x.trial)[tips, 2])),
         )
         if not outcome.converged:
             log.warning("the initial rate is unknown: no equilibrium at the first touch (%s)", outcome.reason)

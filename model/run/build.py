@@ -147,13 +147,17 @@ def build_method(case: Case, layout: LineLayout, name: str) -> Method:
     return rod_method(name, layout.comm.size, case.solver.options, arc)
 
 
-def build_control(case: Case, spring: Spring, system: System) -> Heads:
-    """The spring between its heads."""
+def build_control(case: Case, spring: Spring, system: System, turns: np.ndarray) -> Heads:
+    """The spring between its heads; `turns` of the stations."""
     clamped = case.ends == "clamped"
-    holder: HeadsSpec | SeatsSpec = case.heads if clamped else case.seats
+    holder: HeadsSpec | SeatsSpec = case.clamps if clamped else case.seats
     rotating = any(spec.tilt != "held" or spec.turn != "held" for spec in (holder.bottom, holder.top))
     driven = any(target.rotates for phase in case.loading for target in heads_of(phase).values())
     holding = Holding(clamped, case.seats.hold == "tips", (holder.bottom.held(), holder.top.held()), rotating or driven)
+    if clamped:
+        stations = [int(np.argmin(np.abs(turns - held))) for held in spring.held]
+        pulled = [tail is not None and tail.pulled for tail in spring.tails]
+        holding = holding._replace(stations=(stations[0], stations[1]), at_station=(pulled[0], pulled[1]))
     return Heads(system, spring.free_length, holding, float(spring.mean_radius(0.5 * spring.turns)))
 
 

@@ -63,12 +63,12 @@ class Basis:
         """Monomials and their slopes in y and z at points, shape (m, 2) → (3, m, n)."""
         y, z = ((places - self.origin) @ self.axes.T).T
         a, b = self.powers.T
-        of_y, of_z = (
-            a * y[:, None] ** np.maximum(a - 1, 0) * z[:, None] ** b,
-            b * y[:, None] ** a * z[:, None] ** np.maximum(b - 1, 0),
-        )
+        of_y, of_z = (np.vander(x, self.powers.max() + 1, increasing=True) for x in (y, z))  # their powers
+        lower_y, lower_z = a * of_y[:, np.maximum(a - 1, 0)], b * of_z[:, np.maximum(b - 1, 0)]
+        of_y, of_z = of_y[:, a], of_z[:, b]
+        slope_y, slope_z = lower_y * of_z, of_y * lower_z
         (yy, yz), (zy, zz) = self.axes
-        return np.array([y[:, None] ** a * z[:, None] ** b, of_y * yy + of_z * zy, of_y * yz + of_z * zz])
+        return np.array([of_y * of_z, slope_y * yy + slope_z * zy, slope_y * yz + slope_z * zz])
 
     def __call__(self, places: np.ndarray) -> np.ndarray:
         """p, ∂p/∂y, ∂p/∂z of the polynomials of degree 2 and more, shape (m, 2) → (3, m, polynomials)."""

@@ -109,10 +109,14 @@ class SliceAnalysis:
         for entry in case.past:
             problem = f"a slice begins free of stress; leave '{entry}' out, or use 'coilset solve'"
             raise InputError(problem, f"spring.{entry}")
+        if self.spring.has_tails or self.spring.axis is not None:
+            raise InputError(
+                "a slice is of a coil about a straight axis without hooks or arms; use 'coilset solve'", "spring"
+            )
         self._check_targets()
         self.law = case_law(case, self.spring)
         outline = outline or _wire(case)
-        d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
+        d, D, pitch = (same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
         self.coil, self.turns = Coil(0.5 * D, pitch), self.spring.turns
         section = section_mesh(outline or round_wire(d), across, degree, inside=INSIDE)
@@ -281,7 +285,12 @@ class SliceAnalysis:
         )
 
 
-def _same_in_all_turns(spring: Spring, name: str) -> float:
+def same_in_all_turns(spring: Spring, name: str) -> float:
+    """`wire_diameter`, `mean_diameter` or `pitch` of a cylindrical spring, mm.
+
+    Raises:
+        InputError: if it is not the same in all turns.
+    """
     function = {
         "wire_diameter": spring.wire_diameter,
         "mean_diameter": lambda t: 2.0 * spring.mean_radius(t),
@@ -292,7 +301,7 @@ def _same_in_all_turns(spring: Spring, name: str) -> float:
         closed = name == "pitch" and not spring.bottom.form == spring.top.form == "open"
         hint = "; leave end_coils out" if closed else ""
         raise InputError(
-            f"{values.min():.6g} to {values.max():.6g} mm; the slice needs the same value in all turns, a "
+            f"{values.min():.6g} to {values.max():.6g} mm; the same value is needed in all turns, as of a "
             f"cylindrical spring{hint}",
             f"spring.{name}",
         )

@@ -1,5 +1,7 @@
 """The tangent of the slice with its two border rows and columns for h̄ and λ, in one PETSc matrix."""
 
+from typing import Any
+
 import numpy as np
 import scipy.sparse
 from dolfinx import fem
@@ -64,7 +66,8 @@ class BorderedMatrix:
             more: positions and values that are added before the gauge is fixed.
         """
         self._blocked.data[:] = 0.0
-        fem.assemble_matrix(self._blocked, self._form)
+        assemble: Any = fem.assemble_matrix  # of its forms, types know the one that makes a matrix
+        assemble(self._blocked, self._form)
         self.values[:] = 0.0
         self.values[self._inner] = self._blocked.data
         for places, values in zip(self._columns + self._rows, columns + rows, strict=True):

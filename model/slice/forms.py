@@ -13,6 +13,7 @@ and a variation (v, μ, χ) of (x₀, λ, h̄) has the spatial gradient L = Ĝ F
 The virtual work per radian is ∫ σ : L |det F̂| dξ dη; the factor of χ is the axial force, that of μ the torque.
 """
 
+from functools import cached_property
 from typing import Any
 
 import basix.ufl
@@ -153,9 +154,11 @@ class SliceForms:
 
     def evaluate_tangents(self) -> np.ndarray:
         """F̂ at the points, shape (cells × points, 3, 3)."""
-        if "F" not in self._compiled:
-            self._compiled["F"] = fem.Expression(self._tangents, self.points)
-        return self._compiled["F"].eval(self.mesh, self.cells).reshape(-1, 3, 3)
+        return self._placed_tangents.eval(self.mesh, self.cells).reshape(-1, 3, 3)
+
+    @cached_property
+    def _placed_tangents(self) -> fem.Expression:
+        return fem.Expression(self._tangents, self.points)
 
 
 def assemble(form: fem.Form) -> np.ndarray:

@@ -5,9 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.model.equilibrium.path.release import release
+from coilset.model.base.errors import SolveError
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.problem import SolidProblem
+
+MAX_SECANTS = 20
+PROBE = 0.01  # part of the travel by which the rate of release is measured
+SOFTEST, STIFFEST = 0.02, 1.5  # slopes that a secant may have, over the elastic rate
 
 
 @dataclass(frozen=True)
@@ -20,6 +24,7 @@ class Station:
         torque: moment of the top head about the coil's axis, N mm.
         iterations: linear solves since the last station.
         linear_iterations: iterations within them.
+        cuts: of the step.
     """
 
     travel: float
@@ -27,6 +32,7 @@ class Station:
     torque: float
     iterations: int = 0
     linear_iterations: int = 0
+    cuts: int = 0
 
 
 class AxialProgram:
@@ -50,9 +56,9 @@ class AxialProgram:
         Raises:
             SolveError: if there is no equilibrium.
         """
-        outcome, _cuts = self.problem.step(Motion((0.0, 0.0, -travel)), hours=hours)
+        outcome, cuts = self.problem.step(Motion((0.0, 0.0, -travel)), hours=hours)
         _, top = self.problem.reactions(np.zeros(3))
-        station = Station(travel, -top.force[2], top.moment[2], outcome.iterations, outcome.linear_iterations)
+        station = Station(travel, -top.force[2], top.moment[2], outcome.iterations, outcome.linear_iterations, cuts)
         self.stations.append(station)
         self.report(station)
         return station
@@ -76,6 +82,29 @@ class AxialProgram:
             SolveError: if there is no equilibrium, or the force does not reach zero.
         """
         limit = precision * max(abs(station.force) for station in self.stations)
-        last = self.stations[-1]
-        release(lambda travel: self.go(travel).force, last.travel, last.force, steps, limit)
-        return self.stations[-1]
+        begin = self.stations[-1]
+        first = self.go(begin.travel * (1.0 - PROBE))
+        rate = (begin.force - first.force) / (begin.travel - first.travel)
+        for part in np.arange(1, steps + 1) / steps:
+            self.go(first.travel - part * first.force / rate)
+        return self.reach(0.0, rate, limit)
+
+    def reach(self, force: float, rate: float, limit: float) -> Station:
+        """Go on to an axial force by secants of the last steps.
+
+        Args:
+            force: N; limit: how far off it may be, N.
+            rate: elastic, N/mm, which bounds the secants, and takes the place of one that leads back.
+
+        Raises:
+            SolveError: if there is no equilibrium, or the force is not reached.
+        """
+        before, last = self.stations[-2:]
+        for _secant in range(MAX_SECANTS):
+            if abs(last.force - force) <= limit:
+                return last
+            goes_on = (last.travel - before.travel) * (force - last.force) > 0.0
+            secant = (last.force - before.force) / (last.travel - before.travel) if goes_on else rate
+            slope = np.clip(secant, SOFTEST * rate, STIFFEST * rate)
+            before, last = last, self.go(float(last.travel + (force - last.force) / slope))
+        raise SolveError(f"the force does not come within {limit:g} N of {force:g} N")

@@ -9,6 +9,7 @@ from coilset.model.case import Case
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
 from coilset.model.standards.found import Found
+from coilset.model.standards.rate import tails_compliance
 from coilset.model.standards.sheet import Sheet, pulled_lengths, pulls, rotations, working_lengths
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic, case_law
@@ -31,7 +32,7 @@ def case_sheet(
         spring: its geometry.
         run: results of a run of it, if there is one.
         wire_name: standard wire; None takes the case's, if it names one.
-        lengths: working lengths, mm; if empty, those that the load program goes to.
+        lengths: working lengths, mm; if empty, those of the case, or else those that the load program goes to.
         grade, surface, dynamic: see Sheet.
 
     Raises:
@@ -65,10 +66,15 @@ def case_sheet(
         pulls(case, spring),
         rotations(case, spring),
         getattr(case.spring, "initial_tension", None) or 0.0,
+        tails_compliance(spring, elastic.young_modulus, elastic.shear_modulus, bool(rotations(case, spring))),
     )
     if lengths:
         return made
     if made.pulled:
         return replace(made, lengths=tuple(pulled_lengths(case, spring)))
+    if case.working:
+        of_forces = [cylinder.length - force / made.rate for force in case.working.forces]
+        given = (*case.working.lengths, *of_forces)
+        return replace(made, lengths=tuple(one for one in given if cylinder.solid < one < cylinder.length))
     planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
     return replace(made, lengths=tuple(planned))

@@ -44,7 +44,13 @@ class Found:
         return None if value is None else float(value)
 
     def force_at(self, length: float) -> float | None:
-        """Force when the spring last passed a length, or stood at it but for rounding; None if it never did."""
+        """Force at a length: of the finished spring where it is one of the run's working lengths.
+
+        Else that when the spring last passed it, or stood at it but for rounding; None if it never did.
+        """
+        for state in self.summary.get("working") or ():
+            if state.get("length_wanted") == length and not state["reason"]:
+                return float(state["force_N"])
         near = ROUNDING * self.heights[0]
         high, low = np.maximum(self.heights[1:], self.heights[:-1]), np.minimum(self.heights[1:], self.heights[:-1])
         passed = np.flatnonzero((low <= length + near) & (length - near <= high))

@@ -110,6 +110,34 @@ def torsion_rate(spring: Spring, shear_modulus: float) -> float:
     return rate * Outlined(spring.section).warping().torsion / (0.5 * np.pi)  # J of a disk of radius 1
 
 
+def tails_compliance(spring: Spring, young_modulus: float, shear_modulus: float, turned: bool) -> float:
+    """Compliance of hooks and arms: mm/N along the axis at their held points, or rad/(N mm) about it.
+
+    Castigliano's ∫ (Mt²/(G J) + Mb²/(E I)) ds with the moment m = (x_h − x) × e of a pull e along the axis at the held
+    point x_h, or m = e of a torque; I = π d⁴/64, J = 2 I.
+
+    Args:
+        spring: `Spring`.
+        young_modulus, shear_modulus: E and G, MPa.
+        turned: whether a torque turns the spring, instead of a pull.
+    """
+    if not spring.has_tails:
+        return 0.0
+    axis, corners = np.array([0.0, 0.0, 1.0]), spring.corners
+
+    def density(t: np.ndarray) -> np.ndarray:
+        held = spring.centre_line(np.where(t < 0.0, *spring.held))
+        moment = np.broadcast_to(axis, held.shape) if turned else np.cross(held - spring.centre_line(t), axis)
+        torque = np.sum(moment * spring.tangent(t), axis=-1)
+        bending = np.sum(moment**2, axis=-1) - torque**2
+        inertia = pi * spring.wire_diameter(t) ** 4 / 64.0
+        return (torque**2 / (2.0 * shear_modulus) + bending / young_modulus) / inertia * spring.speed(t)
+
+    first, last = spring.held
+    parts = [corners[(corners >= first) & (corners <= 0.0)], corners[(corners >= spring.turns) & (corners <= last)]]
+    return float(sum(functions.integral(density, part).sum() for part in parts if len(part) > 1))
+
+
 def pitch_compliance(angle: float, nu: float, ends: Literal["turning", "held"] = "turning") -> float:
     """Compliance of a cylindrical spring over that of R = G d⁴/(8 D³ n), due to the wire's pitch angle.
 

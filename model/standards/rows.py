@@ -107,7 +107,10 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
     if opened is None:
         yield _rate(sheet)
     else:
-        yield Row("rate R", sheet.rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, opened, "once the coils are open")
+        of_body = None if sheet.beyond else opened
+        yield Row("rate R", sheet.rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, of_body, "once the coils are open")
+    if sheet.beyond:
+        yield Row("  with hooks", sheet.pull_rate, "N/mm", "1/(1/R + ∫ m²/(E I, G J) ds)", DERIVED, opened, "bars")
     if sheet.tension:
         found, after = sheet.at_run("initial_tension_N"), sheet.at_run("initial_tension_after_N")
         why = "" if after is None else f"{after:.4g} N after the last release"
@@ -119,7 +122,7 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
         return
     formula = "F0 + R (L − L0)" if sheet.tension else "R (L − L0)"
     for length in sheet.lengths:
-        force = sheet.tension + sheet.rate * (length - s.length)
+        force = sheet.tension + sheet.pull_rate * (length - s.length)
         pull = sheet.found.force_at(length) if sheet.found else None
         found = None if pull is None else abs(pull)
         τ = en13906.stress(force, s.d, s.D)
@@ -136,7 +139,11 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
     s, run = sheet.spring, sheet.at_run
     rate, q = en13906.turn_rate(sheet.elastic.young_modulus, s.d, s.D, s.n), en13906.bending_correction(s.index)
     why = "with the wire's pitch and curvature"
-    yield Row("rate R", rate, "N mm/°", "E d⁴/(3667 D n)", DERIVED, run("turn_rate_Nmm_per_deg"), why)
+    turned = run("turn_rate_Nmm_per_deg")
+    yield Row("rate R", rate, "N mm/°", "E d⁴/(3667 D n)", DERIVED, None if sheet.beyond else turned, why)
+    if sheet.beyond:
+        rate = 1.0 / (1.0 / rate + degrees(sheet.beyond))
+        yield Row("  with arms", rate, "N mm/°", "1/(1/R + ∫ ds/(E I, G J))", DERIVED, turned, why)
     yield Row("stress factor q", q, "", "(4 w² − w − 1)/(4 w (w − 1))", DERIVED)
     most = max(sheet.turns_to, key=abs)
     for turn in sheet.turns_to:

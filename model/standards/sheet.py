@@ -36,6 +36,7 @@ class Sheet:
         pulled: whether the load program pulls the spring, see EN 13906-2.
         turns_to: rotations that the load program goes to, degrees, positive in the winding direction, see EN 13906-3.
         tension: initial tension F0 of coils wound onto each other, N.
+        beyond: compliance of hooks, mm/N, or of arms, rad/(N mm).
     """
 
     spring: Cylinder
@@ -53,11 +54,17 @@ class Sheet:
     pulled: bool = False
     turns_to: Sequence[float] = ()
     tension: float = 0.0
+    beyond: float = 0.0
 
     @property
     def rate(self) -> float:
         """R, N/mm."""
         return en13906.rate(self.elastic.shear_modulus, self.spring.of_rate, self.spring.D, self.spring.n)
+
+    @property
+    def pull_rate(self) -> float:
+        """R with hooks, N/mm."""
+        return 1.0 / (1.0 / self.rate + self.beyond)
 
     def force(self, length: float) -> float:
         """Nominal force at a length, N: R (L0 − L), or that of coils of variable pitch, which close one by one."""

@@ -12,25 +12,8 @@ from coilset.model.case.case import Case, check
 from coilset.model.results.files.checkpoint import Checkpoint, Saved
 from coilset.model.results.files.opened import open_run
 from coilset.model.run.analysis import Analysis
-from coilset.model.standards.wires.law import case_elastic
-from coilset.model.vibration.modes import Modes, natural_modes
 
 STATES = "end, block, block-3mm, height=30, travel=5 or force=100"
-
-
-def loaded_modes(analysis: Analysis, count: int = 10, glued: bool = False) -> Modes:
-    """Modes of a spring at its last equilibrium; collective.
-
-    Args:
-        analysis: Analysis of a spring.
-        count, glued: as for `natural_modes`.
-
-    Raises:
-        SolveError: too few modes were found.
-    """
-    density = case_elastic(analysis.case, analysis.law).density
-    load = analysis.control.to_height(analysis.control.height)
-    return natural_modes(analysis.system, load, density, count, glued)
 
 
 def after_run(case: Case, at: str = "end", comm: MPI.Comm = MPI.COMM_WORLD) -> Analysis:

@@ -74,32 +74,8 @@ def section_mass(rod: Rod, density: float) -> SectionMass:
     return SectionMass(np.einsum("cij,cgj->cgi", triads, offset), mass, inertia)
 
 
-def mass_form(rod: Rod, at: SectionMass) -> ufl.Form:
-    """The virtual work of inertia at the trial state, for a unit acceleration of the unknowns."""
-
-    def field(values: np.ndarray) -> Any:
-        space = fem.functionspace(rod.mesh, section_element(values.shape[2:], rod.element))
-        function = fem.Function(space)
-        cells, size = len(values), int(np.prod(values.shape[2:]))
-        function.x.array.reshape(-1, size)[space.dofmap.list[:cells].ravel()] = values.reshape(-1, size)
-        return function
-
-    ξ, offset, mass, inertia = (field(values) for values in (rod.coefficients.xi, *at))
-    chord = ufl.Jacobian(rod.mesh)[:, 0]
-
-    def motion(function: Any) -> tuple[Any, Any]:
-        nodal, _ = ufl.split(function)
-        across = dot(grad(nodal), chord)  # nodal values at the second node less those at the first
-        u, ω = (ufl.as_vector([nodal[i] for i in range(first, first + 3)]) for first in (0, 3))
-        bend = ufl.as_vector([across[i] for i in range(3, 6)])
-        return u + cross(ω, offset) + 0.5 * ξ * (1 - ξ) * cross(chord, bend), ω
-
-    (v, turn), (u, ω) = motion(ufl.TestFunction(rod.V)), motion(ufl.TrialFunction(rod.V))
-    return (mass * inner(v, u) + inner(turn, dot(inertia, ω))) * ufl.dx(rod.mesh, metadata=at_sections(rod.element))
-
-
-def mass_matrix(layout: LineLayout, density: float) -> PETSc.Mat:
-    """Consistent mass of the layout's rod at its last equilibrium, all increments zero, in t and t mm²; collective.
+class Mass:
+    """Consistent mass of a layout's rod, in t and t mm².
 
     Heads have no mass; a station that is fixed to a head moves with the head's unknowns.
 
@@ -107,17 +83,54 @@ def mass_matrix(layout: LineLayout, density: float) -> PETSc.Mat:
         layout: LineLayout.
         density: kg/mm³.
     """
-    rod = layout.rod
-    matrix = fem.assemble_matrix(fem.form(mass_form(rod, section_mass(rod, density))))
-    matrix.scatter_reverse()
-    owned = matrix.index_map(0).size_local
-    indptr = np.concatenate(
-        [matrix.indptr[: owned + 1], np.full(layout.size_local - owned, matrix.indptr[owned])]
-    ).astype(PETSc.IntType)
-    columns = matrix.index_map(1).local_to_global(matrix.indices[: indptr[-1]].astype(np.int32)).astype(PETSc.IntType)
-    sizes = ((layout.size_local, None), (layout.size_local, None))
-    mass = PETSc.Mat().createAIJ(sizes, csr=(indptr, columns, matrix.data[: indptr[-1]]), comm=layout.comm)
-    return mass.ptap(_of_levers(layout, sizes)) if rod.arms else mass
+
+    def __init__(self, layout: LineLayout, density: float) -> None:
+        self.layout, self.rod, self.density = layout, layout.rod, density
+        self._at = [self._field(values) for values in section_mass(self.rod, density)]
+        self._form = fem.form(self._virtual_work(self._field(self.rod.coefficients.xi), *self._at))
+
+    def _field(self, values: np.ndarray) -> fem.Function:
+        space = fem.functionspace(self.rod.mesh, section_element(values.shape[2:], self.rod.element))
+        function = fem.Function(space)
+        self._fill(function, values)
+        return function
+
+    @staticmethod
+    def _fill(function: fem.Function, values: np.ndarray) -> None:
+        cells, size = len(values), int(np.prod(values.shape[2:]))
+        places = function.function_space.dofmap.list[:cells].ravel()
+        function.x.array.reshape(-1, size)[places] = values.reshape(-1, size)
+
+    def _virtual_work(self, ξ: Any, offset: Any, mass: Any, inertia: Any) -> ufl.Form:
+        """That of inertia at the trial state, for a unit acceleration of the unknowns."""
+        rod = self.rod
+        chord = ufl.Jacobian(rod.mesh)[:, 0]
+
+        def motion(function: Any) -> tuple[Any, Any]:
+            nodal, _ = ufl.split(function)
+            across = dot(grad(nodal), chord)  # nodal values at the second node less those at the first
+            u, ω = (ufl.as_vector([nodal[i] for i in range(first, first + 3)]) for first in (0, 3))
+            bend = ufl.as_vector([across[i] for i in range(3, 6)])
+            return u + cross(ω, offset) + 0.5 * ξ * (1 - ξ) * cross(chord, bend), ω
+
+        (v, turn), (u, ω) = motion(ufl.TestFunction(rod.V)), motion(ufl.TrialFunction(rod.V))
+        return (mass * inner(v, u) + inner(turn, dot(inertia, ω))) * ufl.dx(rod.mesh, metadata=at_sections(rod.element))
+
+    def matrix(self) -> PETSc.Mat:
+        """At the rod's last equilibrium, all increments zero; collective."""
+        for function, values in zip(self._at, section_mass(self.rod, self.density), strict=True):
+            self._fill(function, values)
+        layout, matrix = self.layout, fem.assemble_matrix(self._form)
+        matrix.scatter_reverse()
+        owned = matrix.index_map(0).size_local
+        indptr = np.concatenate(
+            [matrix.indptr[: owned + 1], np.full(layout.size_local - owned, matrix.indptr[owned])]
+        ).astype(PETSc.IntType)
+        columns = matrix.index_map(1).local_to_global(matrix.indices[: indptr[-1]].astype(np.int32))
+        sizes = ((layout.size_local, None), (layout.size_local, None))
+        entries = indptr, columns.astype(PETSc.IntType), matrix.data[: indptr[-1]]
+        mass = PETSc.Mat().createAIJ(sizes, csr=entries, comm=layout.comm)
+        return mass.ptap(_of_levers(layout, sizes)) if self.rod.arms else mass
 
 
 def _of_levers(layout: LineLayout, sizes: Any) -> PETSc.Mat:

@@ -20,7 +20,9 @@ from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.matrix import TangentMatrix
 from coilset.model.equilibrium.system.system import System
 from coilset.model.rod.rod import Rod
-from coilset.model.vibration.mass import TONNE, mass_matrix
+from coilset.model.run.analysis import Analysis
+from coilset.model.standards.wires.law import case_elastic
+from coilset.model.vibration.mass import TONNE, Mass
 
 TOLERANCE = 1e-10  # of K φ − λ M φ, relative to λ
 BELOW = 1e-4  # the shift is so far below zero, in (wave speed over length of the wire)²: K may be singular
@@ -65,7 +67,7 @@ def natural_modes(system: System, load: Load, density: float, count: int = 10, g
     """
     layout = system.line
     system.restore()
-    mass = mass_matrix(layout, density)
+    mass = Mass(layout, density).matrix()
     stiffness, ordering = elastic_stiffness(system, load, glued)
     moving = mass.copy()
     moving.zeroRowsColumns((load.held + layout.start).astype(PETSc.IntType), diag=0.0)
@@ -93,6 +95,21 @@ def natural_modes(system: System, load: Load, density: float, count: int = 10, g
     masses, total = _effective(layout, mass, vectors)
     shapes = [_shape(layout, vector) for vector in vectors]
     return Modes(np.sort(values)[:count], np.array(shapes), masses, total)
+
+
+def loaded_modes(analysis: Analysis, count: int = 10, glued: bool = False) -> Modes:
+    """Modes of a spring at its last equilibrium; collective.
+
+    Args:
+        analysis: Analysis of a spring.
+        count, glued: as for `natural_modes`.
+
+    Raises:
+        SolveError: too few modes were found.
+    """
+    density = case_elastic(analysis.case, analysis.law).density
+    load = analysis.control.to_height(analysis.control.height)
+    return natural_modes(analysis.system, load, density, count, glued)
 
 
 def elastic_stiffness(system: System, load: Load, glued: bool = False) -> tuple[PETSc.Mat, str]:

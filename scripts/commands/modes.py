@@ -10,8 +10,8 @@ from rich.table import Table
 from coilset.model.base.agreement import on_first_rank
 from coilset.model.results.records.labels import plain
 from coilset.model.run.analysis import Analysis
-from coilset.model.vibration.loaded import after_results, loaded_modes
-from coilset.model.vibration.modes import Modes
+from coilset.model.vibration.loaded import after_results
+from coilset.model.vibration.modes import Modes, loaded_modes
 from coilset.scripts.terminal.console import Console
 
 NOTE = (

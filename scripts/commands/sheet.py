@@ -13,6 +13,7 @@ from coilset.model.base.warning import Warning
 from coilset.model.case import Case, read_case
 from coilset.model.figures.panels.goodman import goodman as diagram_of
 from coilset.model.figures.png import write_png
+from coilset.model.report.document.words import Language, Words
 from coilset.model.results.files.folder import make, refuse_to_replace
 from coilset.model.standards import found, goodman
 from coilset.model.standards.case_sheet import case_sheet
@@ -27,7 +28,7 @@ from coilset.model.standards.wires.library import files, own_folder
 from coilset.model.standards.wires.words import WIRE_COLUMNS, described, table_row
 from coilset.model.standards.working import presetting_warning
 from coilset.scripts.terminal.console import Console
-from coilset.scripts.terminal.target import results_folder
+from coilset.scripts.terminal.target import SHEETS, results_folder
 
 FIGURE = "goodman.png"
 GRADES: dict[int, Grade] = {grade: grade for grade in get_args(Grade)}
@@ -41,15 +42,16 @@ def sheet(
     grade: int = 2,
     surface: str = "as coiled",
     dynamic: bool = False,
-    out: str | Path | None = None,
+    out: str | Path | Sequence[str] | None = None,
+    language: Language = "en",
     force: bool = False,
     settings: Sequence[str] = (),
     pictures: bool = True,
 ) -> None:
-    """Print the sheet of a spring and draw its Goodman diagram; see `coilset sheet --help`.
+    """Print the sheet of a spring, write it to files, or draw its Goodman diagram; see `coilset sheet --help`.
 
     Raises:
-        InputError: wrong input, a spring that is not cylindrical, or a figure that already exists.
+        InputError: wrong input, a spring that is not cylindrical, or a file that already exists.
     """
     if MPI.COMM_WORLD.rank:
         return  # too little work to be worth distributing
@@ -59,14 +61,17 @@ def sheet(
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
     case = read_case(case_file, settings)
-    folder = results_folder(out, Path(case_file).stem)
+    targets = [Path(one) for one in ([out] if isinstance(out, str | Path) else out or [])]
+    files = [one for one in targets if one.suffix.lower() in SHEETS]
+    folders = [one for one in targets if one not in files]
+    folder = results_folder(folders[-1] if folders else None, Path(case_file).stem)
+    pictures = pictures and (bool(folders) or not files)
     run = found.read(results) if results else None
     with naming(case_file):
         spring = case.spring.build()
         made = case_sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
     diagram = _diagram(made) if pictures else None
-    if diagram is not None:
-        refuse_to_replace([folder / FIGURE], force)
+    refuse_to_replace([*files, *([folder / FIGURE] if diagram is not None else [])], force)
     parts = sections(made)
     width = max(len(row.label) for _, rows in parts for row in rows)
     beside = f"{'run':>9}  " if run else ""
@@ -79,8 +84,18 @@ def sheet(
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
     if run and (other := _otherwise(run, case)):
         console.warn(f"{results} is of another spring: {', '.join(other)}")
-    for warning in _warnings(spring, made):
-        console.warn(warning.message)
+    warnings = [warning.message for warning in _warnings(spring, made)]
+    for message in warnings:
+        console.warn(message)
+    if files:
+        from coilset.model.report.document.content import document
+        from coilset.model.report.document.output import write
+
+        name = Path(results).resolve().name if results else ""
+        content = document(case, spring, made, name, warnings, Words(language))
+        for file in files:
+            write(content, file)
+            console.say(f"sheet in {file}")
     if diagram is not None:
         make(folder)
         write_png(folder / FIGURE, [diagram_of(*diagram, run.residual if run else None)])

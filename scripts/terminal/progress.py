@@ -281,6 +281,13 @@ class _Handler(logging.Handler):
         self.console.print(f"[dim]{record.getMessage()}[/]", soft_wrap=True)
 
 
+def _add_beyond_coil(table: Table, summary: Mapping[str, Any], name: str) -> None:
+    """Rows of hooks or arms."""
+    if summary["tail_stress_max_MPa"] is not None:
+        table.add_row(f"maximum stress along the wire, {name}", quantity(summary["tail_stress_max_MPa"], "MPa", 1))
+        table.add_row("  there after the release", quantity(summary["residual_tail_stress_MPa"], "MPa", 1))
+
+
 def _add_pressed(table: Table, summary: Mapping[str, Any]) -> None:
     """Rows of a spring that is compressed or pulled."""
     of_set = summary["estimated_set_error_mm"]
@@ -288,6 +295,7 @@ def _add_pressed(table: Table, summary: Mapping[str, Any]) -> None:
         table.add_row("initial tension before", quantity(summary["initial_tension_N"], "N", 2))
         table.add_row("initial tension after", quantity(summary["initial_tension_after_N"], "N", 2))
         table.add_row("rate, coils open", quantity(summary["open_rate_N_per_mm"], "N/mm"))
+    _add_beyond_coil(table, summary, "hooks")
     table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
     for number, release in enumerate(summary["releases"][:-1], 1):
         table.add_row(f"free length after release {number}", quantity(release["free_length_mm"], "mm"))
@@ -323,4 +331,5 @@ def _add_turned(table: Table, summary: Mapping[str, Any]) -> None:
     for side in ("inside", "outside"):
         stress = quantity(summary[f"residual_bending_{side}_MPa"], "MPa", 2)
         table.add_row(f"residual bending stress, {side} of coil", stress)
+    _add_beyond_coil(table, summary, "arms")
     table.add_row("smallest inner diameter", quantity(summary["inner_diameter_min_mm"], "mm", 2))

@@ -8,6 +8,8 @@ from coilset.model.base.errors import InputError
 
 OVERWRITE = ("--overwrite", "--force")
 """Names of the option that replaces existing results; the second is its earlier name."""
+SHEETS = (".html", ".pdf", ".csv", ".dxf")
+"""Suffixes of the files of a data sheet."""
 UNFIT = re.compile(r"[/\0]|^\.+$")  # in the name of a folder
 
 
@@ -22,6 +24,15 @@ def folder_target(out: str | None) -> str | None:
     out = os.path.expanduser(out)  # shells leave the ~ of --out=~/x to us
     _check(Path(_named(out, "--out")), "--out")
     return out
+
+
+def sheet_targets(paths: list[str] | None) -> list[str]:
+    """Callback of an option that names files of SHEETS and a folder; returns them; raises as the others."""
+    of_sheet = [path for path in paths or [] if os.path.splitext(path)[1].lower() in SHEETS]
+    for path in paths or []:
+        if path not in of_sheet:
+            folder_target(path)
+    return [_file(path, "--out") if path in of_sheet else os.path.expanduser(path) for path in paths or []]
 
 
 def results_folder(out: str | Path | None, name: str, *above: str) -> Path:

@@ -105,7 +105,7 @@ def test_drag_resists_and_its_derivative_is_in_the_tangent():
     rng = np.random.default_rng(2)
     x, origin, stiffness = 1e-3 * rng.normal(size=n), 1e-3 * rng.normal(size=n), rng.uniform(1.0, 2.0, n)
     found = []
-    for each in (free_of_drag, free_of_drag.dragged(Drag(stiffness, origin))):
+    for each in (free_of_drag, free_of_drag.resisted(Drag(stiffness, origin))):
         F, X = frame.layout.vector(), frame.layout.vector(x.copy())
         system.residual(X, each, 1.0, F)
         system.tangent(X, each, matrix)

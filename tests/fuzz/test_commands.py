@@ -19,7 +19,7 @@ from coilset.model.base.errors import CoilsetError
 from coilset.model.run import build
 from coilset.model.slice import analysis as slices
 from coilset.scripts import main, ranks, running, warm
-from coilset.scripts.commands import design, material, mesh, report, solve, sweep, verify
+from coilset.scripts.commands import design, material, mesh, report, solid, solve, sweep, verify
 from coilset.scripts.commands import slice as slice_command
 from coilset.scripts.startup import typer
 from coilset.verification.benchmarks import everyday
@@ -36,6 +36,7 @@ COMMANDS = {  # a right line each, and the options that it takes besides
         "there",
     ],
     "slice case.yaml": ["--overwrite", "--section", "oval:4:5", "--across", "3", "--no-pictures", "--out", "there"],
+    "solid case.yaml": ["--overwrite", "--turns", "2", "--across", "1", "--layers", "9", "--out", "there"],
     "mesh case.yaml --no-pictures": ["--overwrite", "--write", "wire.vtu", "--out", "there"],
     "sheet case.yaml --no-pictures": [
         "--wire",
@@ -152,6 +153,7 @@ def place(tmp_path, monkeypatch):
     for module, name in (
         (solve, "prepare"),
         (slice_command, "prepare"),
+        (solid, "prepare"),
         (sweep, "_pool"),
         (ranks, "launch"),
         (verify, "_run"),

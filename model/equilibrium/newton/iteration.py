@@ -13,6 +13,7 @@ from petsc4py import PETSc
 from coilset.model.base.compat import NOT_A_NUMBER
 from coilset.model.equilibrium.newton.contact_limit import ContactLimit
 from coilset.model.equilibrium.newton.convergence import EquilibriumTest, Reason, imbalance
+from coilset.model.equilibrium.newton.damping import Damping
 from coilset.model.equilibrium.newton.line_search import WorkSearch
 from coilset.model.equilibrium.newton.methods import ARC_LENGTH, FIRST, Method
 from coilset.model.equilibrium.newton.snes import SnesFactory, solve
@@ -66,7 +67,7 @@ class Iteration:
     ) -> None:
         self.system, self.control, self.limit, self.prepare = system, control, limit, prepare
         self.test = EquilibriumTest(tolerance, control.stagnation)
-        self.search = WorkSearch(system, limit, control)
+        self.search, self.damping = WorkSearch(system, limit, control), Damping(system.layout)
         self.F = system.layout.vector()
         self.matrix = TangentMatrix(system.body, system.layout)
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
@@ -74,6 +75,7 @@ class Iteration:
         self._share: float | None = None  # of the predicted correction, if the next tangent is to be built with it
         self.ratio, self.factorisations, self._at_step_start = np.inf, 0, True
         self._fitted = 0  # matrix version at the last reset of the linear solvers; a solid's never changes
+        self._damped = False  # whether the last tangent was
         self._crawled = 0  # corrections in a row of which less than CRAWL was made
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
         me = weakref.proxy(self)
@@ -158,7 +160,7 @@ class Iteration:
     def negative_pivots(self) -> int | None:
         """Number of negative pivots of the last factors L U; None where they are not shown or not of the last solve."""
         pc = self.snes.getKSP().getPC()
-        if not self.method.searches or not self.factorisations:  # a state that is in equilibrium needs no factors
+        if not self.method.searches or not self.factorisations or self._damped:  # an equilibrium needs no factors
             return None
         return factors.negative_pivots(pc)
 
@@ -188,6 +190,8 @@ class Iteration:
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         self.factorisations += 1
         self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._share)
+        self.damping.add_stiffness(self.matrix.mat, self.load)
+        self._damped = self.damping.value > 0.0
         self.predicted |= self._share is not None
         self._at_step_start, self._share = False, None
         self.prepare(P)
@@ -205,8 +209,10 @@ class Iteration:
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
-        step = self.search(x, y, self.F, self.load, self.load_factor, self._predicts)
+        step = self.search(x, y, self.F, self.load, self.load_factor, self._predicts, self._damped)
         self._step_length = step.contact_limit * step.value
+        if not step.ends_on_the_way:
+            self.damping.learn(y, self.F, self.load, self._step_length)
         always = bool(self.control.predicted_forces)
         use = self._predicts and (step.only_spurious or always or not self.system.touches)
         self._share = self._step_length if use else None
@@ -223,6 +229,7 @@ class Iteration:
         norm, X = norms[2], self.system.increments
         if iteration == 0:
             self._step_length, self._crawled = None, 0
+            self.damping.begin()
             self.test.begin(norm, self.system.body.axial_force if self._predicts else 0.0)
         if not math.isfinite(norm):
             return NOT_A_NUMBER
@@ -263,4 +270,5 @@ class Iteration:
         length = "" if self._step_length is None else f", step length {self._step_length:.3g}"
         part = "" if self.load_factor == 1.0 else f", at {self.load_factor:.3g} of the step"
         balance = f", out of balance {self.ratio:.2e}" if np.isfinite(self.ratio) else ""
+        length += f", damping {self.damping.value:.3g} N/mm" if self.damping.value else ""
         each_iteration.debug("  iteration %d: residual %.3e N%s%s%s", iteration, norm, balance, length, part)

@@ -56,7 +56,7 @@ class WorkSearch:
         self._trial = system.layout.vector()
 
     def __call__(
-        self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float, predicts: bool
+        self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float, predicts: bool, damped: bool
     ) -> StepLength:
         """Step length from `x` along −y, with the residual `F` at x; the three are not changed; collective.
 
@@ -64,9 +64,11 @@ class WorkSearch:
             x, y, F: increments, correction and residual.
             load, load_factor: the fraction of a load that is sought.
             predicts: whether the body predicts its section forces after the correction.
+            damped: whether the correction is, see Damping: then any that goes downhill all along is right.
         """
         system, control = self.system, self.control
         self._x, self._load, self._load_factor, self._predicts = x, load, load_factor, predicts
+        self._damped = damped
         system.evaluate(x)
         if predicts:
             system.predict(-y.getArray(readonly=True))
@@ -95,7 +97,8 @@ class WorkSearch:
 
     def _is_right(self, start: tuple[float, float], work: float, norm: float) -> bool:
         """Whether norm or work of the forces have decreased."""
-        return norm < start[1] or abs(work) <= self.control.accepted_work * abs(start[0])
+        downhill = self._damped and 0.0 < work <= start[0]
+        return downhill or norm < start[1] or abs(work) <= self.control.accepted_work * abs(start[0])
 
     def _without_second_order(self, limit: float, length: float) -> tuple[float, float]:
         """Work and norm at the last evaluation, at `length`, without the spurious forces of finite rotations.

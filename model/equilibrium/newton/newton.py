@@ -159,7 +159,8 @@ class Newton:
             else:
                 part = 0.5 * (aim - reached)
                 crawls = iteration.reason == Reason.DIVERGED_TR_DELTA
-                if part < self.control.smallest_part or crawls or not self.system.touches:
+                whole = not self.iteration.load.changes  # a part of it is the same
+                if part < self.control.smallest_part or crawls or whole or not self.system.touches:
                     return iterations, linear, failed
                 failed += 1
                 X.set(0.0) if good is None else good.copy(X)

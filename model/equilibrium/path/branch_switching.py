@@ -130,7 +130,7 @@ class Snap:
     def _descend(self, load: Load, descent: Descent) -> Outcome:
         """One step against the drag, which is committed; if it fails or goes too far, the drag is increased instead."""
         drag = Drag(descent.drag * descent.weights, descent.origin)
-        outcome = self.solve(load.dragged(drag), Start())
+        outcome = self.solve(load.resisted(drag), Start())
         moved = self.stability.greatest_displacement(self.system.increments)
         if not outcome.converged or moved > FASTER * descent.advance:
             self.system.restore()

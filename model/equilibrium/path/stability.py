@@ -4,6 +4,10 @@ A state of equilibrium is stable where the symmetric part of the tangent of the 
 Sylvester's law it has as many negative eigenvalues as its factors L U have negative pivots. Newton's own factors
 show the signs of the pivots at the last iterate for nothing; where one of them is negative, and with methods that keep
 a matrix, the symmetric part is factorised at the state itself.
+
+With friction the tangent K is not symmetric, and its symmetric part is of no use: a sliding contact, whose traction
+grows by μ c with the penetration and not with the slip, makes it indefinite by itself. A path loses its stability, as
+the solution of M ẋ = −K x does, where a real eigenvalue of K passes zero; those nearest to zero are counted then.
 """
 
 from dataclasses import dataclass
@@ -25,7 +29,8 @@ class Weakest:
     """The weakest mode of a state.
 
     Attributes:
-        negative: number of negative eigenvalues of the symmetric part of the tangent.
+        negative: number of negative eigenvalues of the symmetric part of the tangent; with friction those real ones of
+            the tangent that are among the `BLOCK` nearest to zero.
         value: least of the eigenvalues nearest to zero, N/mm, with rotations counted in coil radii.
         mode: increments whose maximum displacement is 1 mm.
     """
@@ -46,9 +51,11 @@ class Stability:
         self.iteration, self.system, self.layout = iteration, iteration.system, iteration.system.layout
 
     def negative_pivots(self, load: Load) -> int:
-        """Number of negative eigenvalues of the symmetric part of the tangent at the last evaluation; collective."""
+        """Number of negative eigenvalues at the last evaluation; collective."""
         if self.iteration.negative_pivots() == 0:
             return 0
+        if not self.system.is_symmetric:
+            return self.weakest(load).negative
         return _negative(self._factors(load))
 
     def weakest(self, load: Load) -> Weakest:
@@ -62,38 +69,34 @@ class Stability:
                 right = vector.duplicate()
                 right.pointwiseMult(scale, vector)
                 factors.apply(right, vector)
-            values, block = _rayleigh_ritz(matrix, scale, block)
+            values, block = _rayleigh_ritz(matrix, scale, block, self.system.is_symmetric)
         mode = block[int(values.argmin())]
         mode.scale(1.0 / self.greatest_displacement(mode))
-        return Weakest(_negative(factors), float(values.min()), mode)
+        negative = _negative(factors) if self.system.is_symmetric else int(np.count_nonzero(values < 0.0))
+        return Weakest(negative, float(values.min()), mode)
 
     # ---- matrix ----------------------------------------------------------------------------------------------------
 
     def _factors(self, load: Load) -> PETSc.PC:
-        """Factors of the symmetric part of the tangent at the last evaluation."""
-        tangent = self.iteration.matrix
+        """Factors of the tangent at the last evaluation; without friction those of its symmetric part."""
+        tangent, symmetric = self.iteration.matrix, self.system.is_symmetric
         self.system.last_tangent(load, tangent, at_step_start=True)
-        transposed = tangent.mat.copy()
-        transposed.transpose()
         self._matrix = matrix = tangent.mat.copy()
-        matrix.axpy(1.0, transposed)
-        matrix.scale(0.5)
+        if symmetric:
+            transposed = tangent.mat.copy()
+            transposed.transpose()
+            matrix.axpy(1.0, transposed)
+            matrix.scale(0.5)
         rows = (load.held + self.layout.start).astype(PETSc.IntType)
         matrix.zeroRowsColumns(rows, diag=self.system.body.constraint_weight)
-        matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+        matrix.setOption(PETSc.Mat.Option.SYMMETRIC, symmetric)
         factors = lu(matrix, tangent.ordering)
         factors.setUp()
         return factors
 
     def weights(self, load: Load) -> np.ndarray:
-        """Of this rank's unknowns in a mode's norm: 1 of displacements, a tenth of the extent squared of rotations."""
-        assert isinstance(self.layout, LineLayout)
-        n, extent = len(self.layout.station_dofs), self.layout.rod.extent
-        natural = np.ones(self.layout.size)
-        natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * extent) ** 2
-        scale = self.layout.from_order(natural)
-        scale[load.held] = 0.0
-        return scale.copy()
+        """Of this rank's free unknowns in a mode's norm, see Layout; 0 of the others."""
+        return np.where(load.is_held, 0.0, self.layout.weights)
 
     def _start_block(self) -> list[PETSc.Vec]:
         """Vectors to begin with, the same on any number of ranks."""
@@ -120,8 +123,10 @@ def _negative(factors: PETSc.PC) -> int:
     return number
 
 
-def _rayleigh_ritz(matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec]) -> tuple[np.ndarray, list[PETSc.Vec]]:
-    """Eigenvalues of K v = λ M v in the span of a block, and its vectors, M = diag(scale), of length 1."""
+def _rayleigh_ritz(
+    matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec], symmetric: bool
+) -> tuple[np.ndarray, list[PETSc.Vec]]:
+    """Eigenvalues of K v = λ M v in the span of a block, and its vectors, M = diag(scale); infinite, complex ones."""
     size = len(block)
     K, M = np.empty((size, size)), np.empty((size, size))
     for j, right in enumerate(block):
@@ -134,7 +139,12 @@ def _rayleigh_ritz(matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec]) 
     roots, axes = np.linalg.eigh(0.5 * (M + M.T))
     kept = roots > 1e-12 * roots.max()
     basis = axes[:, kept] / np.sqrt(roots[kept])
-    values, vectors = np.linalg.eigh(basis.T @ (0.5 * (K + K.T)) @ basis)
+    reduced = basis.T @ K @ basis
+    if symmetric:
+        values, vectors = np.linalg.eigh(0.5 * (reduced + reduced.T))
+    else:
+        roots, complex_vectors = np.linalg.eig(reduced)
+        values, vectors = np.where(np.isreal(roots), roots.real, np.inf), complex_vectors.real
     combined = []
     for column in (basis @ vectors).T:
         vector = block[0].duplicate()

@@ -12,6 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from coilset.model.base.agreement import sum_of_ranks
+from coilset.model.body.state import Where
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
 from coilset.model.equilibrium.system.layout import SEATS, LineLayout
 from coilset.model.equilibrium.system.load import Load
@@ -32,12 +33,16 @@ class Holding(NamedTuple):
             alone hold the wire.
         heads: held freedoms of the bottom and of the top head, without the axial ones.
         turning: of clamped ends: whether a head ever rotates.
+        stations: of clamped ends: those that belong to the heads, from the first and from the last one.
+        at_station: of clamped ends: whether a head's point is at its station, as of a hook, and not on the axis.
     """
 
     clamped: bool
     tips: bool = True
     heads: Sequence[Sequence[int]] = ((0, 1, 3, 4, 5), (0, 1, 3, 4, 5))
     turning: bool = False
+    stations: tuple[int, int] = (0, -1)
+    at_station: tuple[bool, bool] = (False, False)
 
 
 class Heads:
@@ -59,38 +64,34 @@ class Heads:
         assert isinstance(layout, LineLayout)
         self.system, self.layout, self.free_length, self.radius = system, layout, free_length, radius
         self.clamped, self.measure, self._turning = holding.clamped, AXIAL, holding.turning
-        last = len(layout.station_dofs) - 1
-        bottom, top = layout.station_dofs[0], layout.station_dofs[-1]
+        first, last = (station % len(layout.station_dofs) for station in holding.stations)
+        bottom, top = layout.station_dofs[first], layout.station_dofs[last]
+        self._points = [
+            layout.rod.line.stations[station] * ([1.0, 1.0, 1.0] if there else [0.0, 0.0, 1.0])
+            for station, there in zip((first, last), holding.at_station, strict=True)
+        ]
         held = [LEVEL, *holding.heads[0], *(SEAT_DOFS + freedom for freedom in holding.heads[1])]
         if holding.clamped:
             self.dofs = np.concatenate([bottom, top])
             components, others = np.arange(6), layout.seat_dofs
-            for station, point in ((0, self._centre(0)), (last, self._centre(last))):
-                if holding.turning:
+            if holding.turning:
+                for station, point in zip((first, last), self._points, strict=True):
                     layout.rod.fix_to_head(station, point)
         else:
             self.dofs = layout.seat_dofs
             components = np.delete(np.arange(6), LEVEL) if holding.tips else np.arange(0)
             others = np.concatenate([bottom[components], top[components]])
         self.held = {int(dof): 0.0 for dof in (*others, *self.dofs[held])}
-        self.tips = {"bottom": (0, components), "top": (last, components)}
+        self.tips = {"bottom": (first, components), "top": (last, components)}
         if holding.clamped and holding.turning:
             seats = system.state["seats"]
-            seats.trial[:] = seats.equilibrium[:] = [
-                *self._centre(0),
-                0.0,
-                0.0,
-                0.0,
-                *self._centre(last),
-                0.0,
-                0.0,
-                0.0,
-            ]
-        self._start = self._level("equilibrium")
+            start = np.concatenate([np.pad(point, (0, 3)) for point in self._points])
+            seats.trial[:] = seats.equilibrium[:] = start
+        self._start = system.state.add("free_level", np.array([self._level("equilibrium")]), Where.SHARED)
 
-    def _centre(self, station: int) -> np.ndarray:
-        """Point of the axis at the level of a station in the stress-free state, shape (3,), mm."""
-        return self.layout.rod.line.stations[station] * [0.0, 0.0, 1.0]
+    def begin_here(self) -> None:
+        """Count the height from the last equilibrium on, as that of the free spring."""
+        self._start.trial[0] = self._start.equilibrium[0] = self._level("equilibrium")
 
     # ---- loads -----------------------------------------------------------------------------------------------------
 
@@ -139,9 +140,11 @@ class Heads:
         """Values of all freedoms, shape (12,): x, y, z, mm, and rotation vector, rad, of bottom and top; collective."""
         values: np.ndarray = getattr(self.system.state["seats"], when).copy()
         if self.clamped and not self._turning:
-            for end, station in enumerate((0, len(self.layout.station_dofs) - 1)):
+            for end, (station, _) in enumerate(self.tips.values()):
                 x = self.layout.at_station(getattr(self.system.state["x"], when), station)
-                values[SEAT_DOFS * end : SEAT_DOFS * end + 3] = x - self.layout.rod.line.stations[station] * [1, 1, 0]
+                values[SEAT_DOFS * end : SEAT_DOFS * end + 3] = (
+                    x - self.layout.rod.line.stations[station] + self._points[end]
+                )
         return values
 
     def reactions(self, when: When) -> np.ndarray:
@@ -158,12 +161,12 @@ class Heads:
     @property
     def height(self) -> float:
         """At the last equilibrium, mm."""
-        return self.free_length + (self._level("equilibrium") - self._start)
+        return self.free_length + float(self._level("equilibrium") - self._start.equilibrium[0])
 
     @property
     def trial_height(self) -> float:
         """In the trial state, mm; collective."""
-        return self.free_length + (self._level("trial") - self._start)
+        return self.free_length + float(self._level("trial") - self._start.equilibrium[0])
 
     @property
     def force(self) -> float:
@@ -208,7 +211,7 @@ class Heads:
         """Axial position of the driven head, mm; collective."""
         state = self.system.state
         if self.clamped and not self._turning:
-            return float(self.layout.at_station(getattr(state["x"], when), len(self.layout.station_dofs) - 1)[2])
+            return float(self.layout.at_station(getattr(state["x"], when), self.tips["top"][0])[2])
         return float(getattr(state["seats"], when)[AXIAL])
 
     def _force(self, when: When, freedom: int) -> float:
@@ -232,8 +235,9 @@ class Heads:
         return held
 
     def centre(self, end: str, x: np.ndarray) -> np.ndarray:
-        """Centre of the seat, or where the axis meets the head, at station positions `x`, shape (3,), mm."""
+        """Centre of the seat, or the head's point, at station positions `x`, shape (3,), mm."""
         if self.clamped and not self._turning:
-            return np.array([0.0, 0.0, x[self.tips[end][0] if len(x) > 1 else 0, 2]])
+            height: float = x[self.tips[end][0] if len(x) > 1 else 0, 2]
+            return self._points[ENDS.index(end)] * [1.0, 1.0, 0.0] + [0.0, 0.0, height]
         first = SEAT_DOFS * ENDS.index(end)
         return self.system.seats[first : first + 3]

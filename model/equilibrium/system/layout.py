@@ -1,5 +1,6 @@
 """Positions of the unknowns in PETSc's vectors, and the natural order, which is independent of the partition."""
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,6 +38,11 @@ class Layout:
         self.size_local, self.size = self.owned + (extra if self.has_extra else 0), self.body_size + extra
         self.start = self.index_map.local_range[0] * self.block_size
         self.stop = self.start + self.size_local
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """M of this rank's unknowns: how much each counts in the norm of a mode, shape (size_local,)."""
+        return np.ones(self.size_local)
 
     def vector(self, values: np.ndarray | None = None) -> PETSc.Vec:
         """A PETSc vector of the unknowns: new and zero, or around this rank's `values`, shape (size_local,)."""
@@ -93,6 +99,13 @@ class LineLayout(Layout):
         element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
         self.element_dofs = np.empty((len(element), rod.element.own), dtype=PETSc.IntType)
         self.element_dofs[element] = np.concatenate(comm.allgather(own))
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """See Layout: 1 of displacements, a tenth of the extent squared of rotations; collective."""
+        n, natural = len(self.station_dofs), np.ones(self.size)
+        natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * self.rod.extent) ** 2
+        return self.from_order(natural).copy()
 
     @property
     def _all_dofs(self) -> np.ndarray:

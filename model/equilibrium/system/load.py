@@ -3,13 +3,27 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numba import njit
+from petsc4py import PETSc
 
 from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.extremes import largest
 from coilset.model.equilibrium.system.layout import Layout
+
+
+class Resistance(Protocol):
+    """What resists the motion of the unknowns in a step of time: drag or inertia."""
+
+    def forces(self, increments: np.ndarray) -> np.ndarray:
+        """Forces at given increments, this rank's part, N and N mm."""
+        ...
+
+    def add_stiffness(self, matrix: PETSc.Mat) -> None:
+        """Add their derivative to the tangent; collective."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -28,6 +42,12 @@ class Drag:
         """Forces at given increments, this rank's part, N and N mm."""
         return self.stiffness * (increments - self.origin)
 
+    def add_stiffness(self, matrix: PETSc.Mat) -> None:
+        """Add c to the diagonal of the tangent; collective."""
+        diagonal = matrix.createVecLeft()
+        diagonal.setArray(self.stiffness)
+        matrix.setDiagonal(diagonal, addv=PETSc.InsertMode.ADD_VALUES)
+
 
 @dataclass(frozen=True)
 class Load:
@@ -39,7 +59,7 @@ class Load:
         increments: shape (h,), mm and rad.
         loaded: places with an external force, shape (f,).
         forces: at the end of the step, shape (f,), N and N mm; moments are of the fixed frame.
-        drag: Drag of the free unknowns, or None.
+        resistance: of the free unknowns, or None.
     """
 
     layout: Layout
@@ -47,7 +67,7 @@ class Load:
     increments: np.ndarray
     loaded: np.ndarray
     forces: np.ndarray
-    drag: Drag | None = None
+    resistance: Resistance | None = None
 
     @classmethod
     def of(cls, layout: Layout, fixed: Mapping[int, float], forces: Mapping[int, float]) -> "Load":
@@ -107,9 +127,9 @@ class Load:
         """
         _miss(self.held, self.increments, load_factor, increments, weight, F)
 
-    def dragged(self, drag: Drag | None) -> "Load":
-        """The same load with another drag, or none."""
-        return replace(self, drag=drag)
+    def resisted(self, resistance: Resistance | None) -> "Load":
+        """The same load with another resistance, or none."""
+        return replace(self, resistance=resistance)
 
     @cached_property
     def is_held(self) -> np.ndarray:
@@ -131,6 +151,12 @@ class Load:
     def multiple_of(self, other: "Load") -> float:
         """The factor by which it prescribes what another load on the same unknowns does; collective."""
         return sum_of_ranks(self.layout.comm, self.increments @ other.increments) / other.prescribed**2
+
+    @cached_property
+    def changes(self) -> bool:
+        """Whether a part of the step is another problem than the whole: forces may differ from those at its start;
+        collective when it is first requested."""
+        return self.prescribed > 0.0 or sum_of_ranks(self.layout.comm, len(self.loaded)) > 0.0
 
     @cached_property
     def _greatest(self) -> float:

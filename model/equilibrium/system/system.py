@@ -211,6 +211,11 @@ class System:
         return self.last.penetration if self.last.has_stress else np.inf
 
     @property
+    def is_symmetric(self) -> bool:
+        """Is the tangent symmetric in equilibrium? Friction has no potential."""
+        return not (self.contacts and self.touching.need_rotations)
+
+    @property
     def touches(self) -> bool:
         """Is any contact closed at the last evaluation, on any rank?"""
         return self.last.closed > 0
@@ -274,9 +279,9 @@ class System:
             np.subtract(internal, self._forces_in_charts(load, load_factor), out=values)
         else:
             load.out_of_balance(load_factor, internal, self._reactions.equilibrium, x, weight, values)
-        if load.drag is not None:
-            values += load.drag.forces(x)
-        if moments or load.drag is not None:
+        if load.resistance is not None:
+            values += load.resistance.forces(x)
+        if moments or load.resistance is not None:
             load.miss(load_factor, x, weight, values)
 
     def _forces_in_charts(self, load: Load, load_factor: float) -> np.ndarray:
@@ -312,8 +317,8 @@ class System:
         if self.contacts:
             self.touching.iterate()
         matrix.fill(self.acting if self._arms else self.last.contributions, at_step_start, share)
-        if load.drag is not None:
-            matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)
+        if load.resistance is not None:
+            load.resistance.add_stiffness(matrix.mat)
         matrix.hold(load.held)
 
     # ---- mixed integration point (MIP) iteration -------------------------------------------------------------------

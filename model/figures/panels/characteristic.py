@@ -1,6 +1,6 @@
 """Force over travel, and the rate along it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,10 +23,12 @@ def characteristic(run: Run) -> Panel:
         return torque_curve(run)
     summary, found = run.summary, phases(run, NAMED)
     traces = []
+    wound = summary.get("initial_tension_N") is not None
     for phase, travel, force in _curves(run, found):
         colour = phase.number if phase.number < NAMED else GREY
         entry: dict[str, Any] = {"name": phase.label, "legendgroup": phase.label}
-        traces.append(curve(*smooth(travel, force), colour, hoverinfo="skip", showlegend=phase.named, **entry))
+        kinks = opening(run, phase) if wound else []
+        traces.append(curve(*smooth(travel, force, kinks), colour, hoverinfo="skip", showlegend=phase.named, **entry))
         steps = curve(travel, force, colour, marker=5, showlegend=False, **entry)
         traces.append(steps | {"mode": "markers", "marker": {"size": 5, "color": steps["line"]["color"]}})
     traces += unnamed(found, NAMED)
@@ -104,12 +106,24 @@ def _curves(
         yield phase, travel[steps], force[steps]
 
 
-def smooth(travel: npt.ArrayLike, force: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+def opening(run: Run, phase: Phase) -> list[int]:
+    """Points of a phase's curve before which wound coils open or close."""
+    touching = np.append(1, run.data["contacts"].values)[np.append(phase.steps[0], phase.steps + 1)] > 0
+    found: list[int] = (np.flatnonzero(np.diff(touching)) + 1).tolist()
+    return found
+
+
+def smooth(travel: npt.ArrayLike, force: npt.ArrayLike, kinks: Sequence[int] = ()) -> tuple[np.ndarray, np.ndarray]:
     """A phase's force over travel, through its steps by monotone cubic Hermite interpolation (Fritsch and Carlson).
 
     It has no corner at a step and no value beyond its neighbours, so that it neither rounds off nor overshoots a kink
-    where coils close. A phase of fewer than three steps, or one whose travel turns back, keeps its straight lines.
+    where coils close. A phase of fewer than three steps, or one whose travel turns back, keeps its straight lines. At
+    `kinks`, points before which the rate jumps, the curve is cut, and a straight line joins its pieces.
     """
+    if kinks:
+        cuts = [np.split(np.asarray(values, float), kinks) for values in (travel, force)]
+        both = [smooth(*piece) for piece in zip(*cuts, strict=True)]
+        return np.concatenate([x for x, _ in both]), np.concatenate([y for _, y in both])
     from scipy.interpolate import PchipInterpolator
 
     x, y = np.asarray(travel, float), np.asarray(force, float)

@@ -4,7 +4,7 @@ import numpy as np
 
 from coilset.model.figures.panels.panel import Panel, axis
 from coilset.model.figures.panels.spring_view import PER_ELEMENT, scene_of, shown_surface
-from coilset.model.figures.wire import inside, section_turns, surface
+from coilset.model.figures.wire import coil_turns, inside, section_turns, surface
 from coilset.model.results.files.opened import Run
 
 NOTE = "1 where the wire just endures: amplitude of fully reversed stress that damages as much, over that endured."
@@ -69,7 +69,9 @@ def fatigue_view(run: Run) -> Panel | None:
     heights = np.ptp(data["working_position"].values[..., 2], axis=1)
     x = data["working_position"].values[int(np.argmin(heights))]
     rings = PER_ELEMENT * (len(x) - 1) + 1
-    places, shown = surface(data["turn"].values, x, data["wire_radius"].values, used[number], inside(run), rings)
+    places, shown = surface(
+        data["turn"].values, x, data["wire_radius"].values, used[number], inside(run), rings, coil=coil_turns(run)
+    )
     trace = {
         "type": "surface",
         "cmin": 0.0,

@@ -24,7 +24,7 @@ BOTH: dict[str, dict[str, Any]] = {  # both curves of a symmetric spring stay vi
 BESIDE_AXIS = "of the force centre from the axis"
 
 
-def _significant(run: Run) -> np.ndarray:
+def significant(run: Run) -> np.ndarray:
     """Which steps have a force whose centre is drawn, shape (steps,)."""
     force = np.abs(run.data["force_N"].values)
     return np.asarray(force > FAINT * np.nanmax(force, initial=0.0))
@@ -50,7 +50,7 @@ def force_centre(run: Run) -> Panel | None:
     """Path of the force centre on both seats; None for a spring without steps, or without a force."""
     if not _has_force(run):
         return None
-    traces, steps = [], run.data["step"].values[_significant(run)]
+    traces, steps = [], run.data["step"].values[significant(run)]
     for number, (end, (x, y)) in enumerate(_ends(run).items()):
         tip = curve(x[:1], y[:1], number, name=f"wire's tip at the {end}")
         traces.append(curve(x, y, number, width=1.0, opacity=0.6, showlegend=False, hoverinfo="skip"))
@@ -58,7 +58,7 @@ def force_centre(run: Run) -> Panel | None:
         traces.append(tip | {"mode": "markers", "marker": marker, "hoverinfo": "skip"})
         looks: dict[str, dict[str, Any]] = {"pressure": {"width": 6.0, "opacity": 0.3}, "centre": {"marker": 5}}
         for name, words in (("pressure", f"centre of pressure, {end}"), ("centre", f"force centre, {end}")):
-            x, y = (run.data[f"{end}_{name}_{axis_name}_mm"].values[_significant(run)] for axis_name in "xy")
+            x, y = (run.data[f"{end}_{name}_{axis_name}_mm"].values[significant(run)] for axis_name in "xy")
             if np.isfinite(x).any():
                 text = [f"step {step}" for step in steps]
                 traces.append(curve(x, y, number, name=words, text=text, **looks[name]))
@@ -90,7 +90,7 @@ def eccentricity(run: Run) -> Panel | None:
     """Distance of the force centre from the axis over travel; None for a spring without steps, or without a force."""
     if not _has_force(run):
         return None
-    radius, strong = _radius(run), _significant(run)
+    radius, strong = _radius(run), significant(run)
     distance = {end: np.where(strong, run.data[f"{end}_eccentricity_mm"].values, np.nan) for end in ENDS}
     most = float(np.nanmax([*distance.values(), np.zeros_like(strong)]))
     traces = over_travel(run, [(values, BOTH[end]) for end, values in distance.items()])

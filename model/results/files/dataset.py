@@ -56,6 +56,7 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "material": setup.material,
             "section_rule": rule.name,
             "section_kind": setup.section_kind,
+            "coil_turns": repr(float(setup.spring.turns)),
         },
     )
     if rule.outline is not None:

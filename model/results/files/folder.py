@@ -23,6 +23,7 @@ DERIVED = (
     "springs.png",
     "cross_section.png",
     "force_centre.png",
+    "force_line.png",
     "seat_pressure.png",
     "buckling_mode.png",
     "section.png",

@@ -128,18 +128,25 @@ def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, 
 def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
     """Entries of the summary of a spring whose coils are wound onto each other: F0 before and after, N, and rate.
 
-    The line of an open spring, F = F0 + R s, by the first two steps without contact, and by the last two of the last
-    release, is followed back to the height at which the coils touched at the start.
+    The line of an open spring, F = a + R s, by the first two steps without contact, and by the last two of the last
+    release, is followed back to that of the closed one, s = c F by the first step in which coils touch: there
+    F0 = a/(1 − R c). Without such a step c is zero; it is that of hooks and of coils that press on each other.
     """
     names = "initial_tension_N", "initial_tension_after_N", "open_rate_N_per_mm"
     if not setup.wound_solid:
         return dict.fromkeys(names)
     pulled = [step for step in result.steps if step.force_N < 0.0 and not step.contacts]
     before, rate = _line([step for step in pulled if step.phase == pulled[0].phase][:2] if pulled else [])
+    touching = next((step for step in result.steps if step.force_N < 0.0 and step.contacts), None)
+    closed = touching.travel_mm / touching.force_N if touching else 0.0
+    if before is not None and rate is not None:
+        before /= 1.0 - rate * closed
     after = None
     if release is not None:
         back = [step for step in result.steps if step.phase == release.phase and not step.contacts]
-        after = _line(back[-2:])[0]
+        after, back_rate = _line(back[-2:])
+        if after is not None and back_rate is not None:
+            after /= 1.0 - back_rate * closed
     return dict(zip(names, (before, None if after is None else max(after, 0.0), rate), strict=True))
 
 

@@ -66,5 +66,5 @@ def _released(setup: Setup, result: Result) -> Iterator[Release]:
         ends = phase == number_of_phases - 1
         if not steps or steps[-1].lift_off_mm or load(steps[-1]) > FREE * maximum or not (maximum or ends):
             continue
-        length = setup.outer_length(snapshot.x)
+        length = snapshot.height if setup.spring.has_tails else setup.outer_length(snapshot.x)
         yield Release(phase, snapshot, steps[-1], length, setup.spring.free_length - length)

@@ -34,9 +34,9 @@ class LeastRise:
     """
 
     def __init__(self, turns: np.ndarray, spring: Spring) -> None:
-        lower = turns[turns <= turns[-1] - 1.0]
+        lower = turns[(turns >= 0.0) & (turns <= spring.turns - 1.0)]
         diameter = 0.5 * (spring.wire_diameter(lower) + spring.wire_diameter(lower + 1.0))
-        aside = spring.mean_radius(lower + 1.0) - spring.mean_radius(lower)
+        aside = spring.aside(lower, lower + 1.0)
         touching = touching_pitch(diameter, aside, spring.section)
         lies = touching > PASSING * diameter
         self._turns, self._lower, self._touching = turns, lower[lies], touching[lies]

@@ -17,10 +17,12 @@ from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
 from coilset.model.results.records.releases import Release, is_turned, releases
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
-from coilset.model.results.records.working import WorkingState, plastic_rise, working_numbers
+from coilset.model.results.records.working import LINE, WorkingState, plastic_rise, working_numbers
 from coilset.model.section import surface
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
+
+CROSSINGS = tuple(name for name in LINE if name.startswith("line_"))
 
 
 def summarise(setup: Setup, result: Result) -> dict[str, Any]:
@@ -68,6 +70,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         **peaks(setup, "", result.snapshots),
         **bending(setup, "residual_", [shot] if shot else []),
         **bending(setup, "max_", result.snapshots),
+        **beyond_coil(setup, shot, result.snapshots),
         inner_diameter_min_mm=min(inner_diameter(setup, one) for one in result.snapshots),
         **turning(setup, result, release),
         **tension(setup, result, release),
@@ -191,10 +194,30 @@ def bending(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[st
     return found
 
 
+def beyond_coil(setup: Setup, released: Snapshot | None, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+    """Stress along the wire of hooks or arms, MPa, positive in tension, and its turn; the residual one at that place.
+
+    The value of largest magnitude on their surface in any snapshot; None without hooks or arms.
+    """
+    names = "tail_stress_max_MPa", "tail_stress_max_turn", "residual_tail_stress_MPa"
+    among = (setup.section_turns < 0.0) | (setup.section_turns > setup.spring.turns)
+    if not among.any():
+        return dict.fromkeys(names)
+
+    def along(shot: Snapshot) -> np.ndarray:
+        return surface.component(shot.surface_state, shot.components, "s11")[among]
+
+    stress = max(map(along, snapshots), key=lambda values: float(np.abs(values).max()))
+    at, angle = np.unravel_index(np.abs(stress).argmax(), stress.shape)
+    residual = None if released is None else float(along(released)[at, angle])
+    return dict(zip(names, (float(stress[at, angle]), float(setup.section_turns[among][at]), residual), strict=True))
+
+
 def inner_diameter(setup: Setup, snapshot: Snapshot) -> float:
     """Diameter of the largest arbor about the axis that the coils leave room for, mm."""
-    radius = 0.5 * setup.spring.wire_diameter(setup.turns)
-    return 2.0 * float((np.hypot(snapshot.x[:, 0], snapshot.x[:, 1]) - radius).min())
+    coil = (setup.turns >= 0.0) & (setup.turns <= setup.spring.turns)
+    radius = 0.5 * setup.spring.wire_diameter(setup.turns[coil])
+    return 2.0 * float((np.hypot(*snapshot.x[coil, :2].T) - radius).min())
 
 
 def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
@@ -264,6 +287,7 @@ def _entry(setup: Setup, result: Result, state: WorkingState) -> dict[str, Any]:
         "top_centre_x_mm": _known(seats.top.centre_x_mm),
         "top_centre_y_mm": _known(seats.top.centre_y_mm),
         "side_force_N": seats.side_force_N,
+        **({} if setup.force_line is None else {f"{one}_mm": _known(getattr(seats, f"{one}_mm")) for one in CROSSINGS}),
     }
 
 

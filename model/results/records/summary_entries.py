@@ -112,6 +112,16 @@ class Summary:
     residual_bending_outside_MPa: float | None = entry("MPa", "the same at the outside of the coil", of_slice=False)
     max_bending_inside_MPa: float | None = entry("MPa", "that at the inside in any snapshot", of_slice=False)
     max_bending_outside_MPa: float | None = entry("MPa", "that at the outside in any snapshot", of_slice=False)
+    tail_stress_max_MPa: float | None = entry(
+        "MPa",
+        "stress along the wire of largest magnitude on the surface of hooks or arms in any snapshot; positive in "
+        "tension; `null`, as the next two, without these",
+        of_slice=False,
+    )
+    tail_stress_max_turn: float | None = entry(
+        "turns", "its turn: below 0 at the bottom, above the coil's last turn at the top", of_slice=False
+    )
+    residual_tail_stress_MPa: float | None = entry("MPa", "that which stays there after release", of_slice=False)
     inner_diameter_min_mm: float = entry(
         "mm", "diameter of the largest arbor that the coils leave room for in all snapshots", of_slice=False
     )

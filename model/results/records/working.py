@@ -14,6 +14,8 @@ from coilset.model.results.records.record import Result, SeatReactions, Setup, S
 from coilset.model.section import surface
 
 FLOWS = 1e-5  # of the free length: a further set by less is not noticed
+LINE = {f"line_{plane}_{axis}": "mm" for plane in ("lower", "upper") for axis in "xy"} | {"side_force": "N"}
+"""Numbers of the force line, of cases with `force_line`."""
 QUANTITIES = {
     "force": "N",
     "length": "mm",
@@ -23,6 +25,7 @@ QUANTITIES = {
     "shear_inside": "MPa",
     "shear_surface": "MPa",
     "safety": "",
+    **LINE,
 }
 """Numbers of a working state, with the units that their names end with."""
 NUMBER = re.compile(
@@ -112,9 +115,11 @@ def names_of(working: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def quantities_at(kind: str) -> list[str]:
-    """The quantities that have a name at a `length`: all others; at a `force` the length alone, to be unambiguous."""
-    return ["length"] if kind == "force" else [name for name in QUANTITIES if name != "length"]
+def quantities_at(kind: str, line: bool = False) -> list[str]:
+    """The quantities that have a name at a `length`: all others, with those of the force `line` or without; at a
+    `force` the length alone, to be unambiguous."""
+    others = [name for name in QUANTITIES if name != "length" and (line or name not in LINE)]
+    return ["length"] if kind == "force" else others
 
 
 def place_of(name: str) -> tuple[Literal["length", "force"], float]:
@@ -135,7 +140,7 @@ def working_numbers(entries: Sequence[Mapping[str, Any]]) -> dict[str, float | N
     found: dict[str, float | None] = {}
     for entry in entries:
         kind = "length" if "length_wanted" in entry else "force"
-        for quantity in quantities_at(kind):
+        for quantity in quantities_at(kind, line="line_lower_x_mm" in entry):
             unit = QUANTITIES[quantity]
             found[number_name(quantity, entry[f"{kind}_wanted"])] = entry.get(
                 f"{quantity}_{unit}" if unit else quantity

@@ -8,10 +8,11 @@ The reference is one slice of finite elements in three dimensions, in which noth
 force at full travel, set, and the residual shear at the inside of the coil at 0.9 of the half width. Sections are oval
 4 × 5 mm, rectangle 6 × 3 mm with corners of 0.5 mm, and an egg 5.6 mm wide and 5 mm high. `curved` sections keep the
 elastic warping in plastic flow, with 160 points; `warping` ones find theirs, with polynomials of degree 5 and 160
-points, of the rectangle 7 and 320.
+points, of the rectangle 9 and 640.
 
-Wanted are 0.3 % of force and set and 3 % of the residual shear. Oval and egg meet it with `warping`. Tolerances of the
-others are what is reached: a rectangle's warping changes most as it yields, so that `curved` ones are too stiff then.
+Wanted are 0.3 % of force and set and 3 % of the residual shear. Oval and egg meet it with `warping`, the rectangle but
+for its residual shear, where polynomials do not follow the kinks of its plastic warping. Tolerances of the others are
+what is reached: a rectangle's warping changes most as it yields, so that `curved` ones are too stiff then.
 """
 
 import time
@@ -41,7 +42,7 @@ WIRES: dict[str, Outline] = {
 WANTED = (3e-3, 3e-3, 3e-3, 3e-2)
 TOLERANCES = {  # of rate, force, set, residual shear
     "oval 4 × 5": {"curved": (1e-3, 6e-3, 3e-3, 8e-2), "warping": WANTED},
-    "rectangle 6 × 3": {"curved": (5e-3, 3e-2, 3e-3, 3e-1), "warping": (3e-3, 5e-3, 3e-3, 7e-2)},
+    "rectangle 6 × 3": {"curved": (5e-3, 3e-2, 3e-3, 3e-1), "warping": (*WANTED[:3], 1e-1)},
     "egg 5.6 × 5": {"curved": (2e-3, 5e-3, 3e-3, 4e-2), "warping": WANTED},
 }
 QUANTITIES = ("rate of a turn, N/mm", "force at full travel, N", "set of a turn, mm", "residual shear at 0.9, MPa")
@@ -59,7 +60,7 @@ def run(study: Study) -> None:
         for index in (4.0, 6.0, 8.0):
             reference = slice_of(outline, index)
             for kind, limits in TOLERANCES[name].items():
-                points, degree = (320, 7) if kind == "warping" and name.startswith("rectangle") else (160, 5)
+                points, degree = (640, 9) if kind == "warping" and name.startswith("rectangle") else (160, 5)
                 began = time.process_time()
                 found, seconds = coil(outline, index, points, kind, degree), time.process_time() - began
                 for quantity, ours, theirs, tolerance in zip(QUANTITIES, found, reference, limits, strict=True):

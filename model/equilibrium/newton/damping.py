@@ -1,0 +1,72 @@
+"""Damping of Newton's corrections along weak modes, where contacts or yielding stop them.
+
+Where coils can slide off each other the tangent K has a weak mode, along which a correction is many wire diameters
+long. The search then leaves a hundredth of it, and as little of what the correction does to all other modes. With the
+tangent K + c M instead (pseudo-transient continuation: backward Euler for M ẋ = −F with the time step 1/c) a mode of
+the stiffness κ is corrected by the share κ/(κ + c): stiff ones wholly, weak ones by as much as is possible. So
+
+    c → c + κ (1/λ − 1),   κ = y·F/(y·M y)
+
+where the share λ of a correction y was made, and c → c · RELAX where all of it was, until c is nothing beside κ: close
+to the equilibrium the iteration is Newton's. The forces F have no damping, so that the equilibrium is the same. See
+C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508.
+"""
+
+import math
+
+import numpy as np
+from petsc4py import PETSc
+
+from coilset.model.base.agreement import sum_of_ranks
+from coilset.model.equilibrium.system.layout import Layout
+from coilset.model.equilibrium.system.load import Drag, Load
+
+SHORT = 0.3  # share of a correction below which the next one is damped
+RELAX = 0.3  # factor on the damping after a correction of which more was made
+NOTHING = 1e-2  # of κ: damping below it is left out
+
+
+class Damping:
+    """The damping of an iteration.
+
+    Args:
+        layout: Layout of the unknowns.
+
+    Attributes:
+        value: c, N/mm; 0: none.
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        self.layout, self.value = layout, 0.0
+
+    def begin(self) -> None:
+        """No damping yet."""
+        self.value = 0.0
+
+    def add_stiffness(self, matrix: PETSc.Mat, load: Load) -> None:
+        """Add c M of the free unknowns to a tangent; collective."""
+        if self.value > 0.0:
+            weights = np.where(load.is_held, 0.0, self.layout.weights)
+            Drag(self.value * weights, np.zeros_like(weights)).add_stiffness(matrix)
+
+    def learn(self, y: PETSc.Vec, F: PETSc.Vec, load: Load, share: float) -> None:
+        """Set the damping of the next correction.
+
+        Args:
+            y: correction, F: residual before it.
+            load: of the step.
+            share: of the correction that is made.
+        """
+        if self.value == 0.0 and share >= SHORT:
+            return
+        along = np.where(load.is_held, 0.0, y.getArray(readonly=True))
+        comm = self.layout.comm
+        work = sum_of_ranks(comm, along @ F.getArray(readonly=True))
+        square = sum_of_ranks(comm, along @ (self.layout.weights * along))
+        stiffness = abs(work) / square if square > 0.0 and math.isfinite(work) else 0.0
+        if share < SHORT:
+            self.value += stiffness * (1.0 / share - 1.0)
+        else:
+            self.value *= RELAX
+            if self.value < NOTHING * stiffness:
+                self.value = 0.0

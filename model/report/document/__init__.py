@@ -1,0 +1,1 @@
+"""The data sheet of a spring as a document: drawing, tables and diagrams on A4, in two languages."""

@@ -1,0 +1,255 @@
+"""What the data sheet of a spring says: its head, drawing, tables, diagrams and remarks."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.case import Case
+from coilset.model.case.sheet import SheetSpec
+from coilset.model.figures.panels.characteristic import smooth
+from coilset.model.figures.panels.goodman import goodman
+from coilset.model.figures.panels.panel import GREY, Panel, Trace, axis, curve
+from coilset.model.report.document.view import Drawing, Level, view
+from coilset.model.report.document.words import Words
+from coilset.model.results.limits import Limit, case_limits
+from coilset.model.results.records.units import quantity
+from coilset.model.results.records.working import is_working_number, number_name
+from coilset.model.standards import en15800
+from coilset.model.standards.rows import Row, sections
+from coilset.model.standards.sheet import Sheet
+
+MOST_LEVELS = 6  # lengths on the drawing; the table has all
+DRAWN = {"free_length_after_mm": "free length L0", "rate_30_70_after_N_per_mm": "rate R"}
+FINISHED = {
+    "set_mm": ("set", "mm"),
+    "residual_shear_inside_MPa": ("residual shear stress, inside", "MPa"),
+    "force_max_N": ("greatest force of the run", "N"),
+}
+POINTS = 200  # of the formula's curve
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of a table: what it is, by the formula, by the run, and its unit."""
+
+    label: str
+    value: str
+    found: str = ""
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Document:
+    """The content of a sheet, in one language.
+
+    Attributes:
+        title: of the kind of spring.
+        head: names and values of its head.
+        basis: where the numbers are from.
+        drawing: side view with dimensions.
+        tables: headings with their lines.
+        has_run: whether the tables have a column of a run.
+        panels: diagrams.
+        remarks: what must be said beside.
+        words: of the language.
+    """
+
+    title: str
+    head: list[tuple[str, str]]
+    basis: str
+    drawing: Drawing
+    tables: list[tuple[str, list[Line]]]
+    has_run: bool
+    panels: list[Panel]
+    remarks: list[str]
+    words: Words
+
+
+def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequence[str], words: Words) -> Document:
+    """The document of a sheet.
+
+    Args:
+        case, spring: of the sheet.
+        sheet: its numbers, with those of a run if there is one.
+        run: name of the run; empty without one.
+        remarks: warnings.
+        words: of the language.
+    """
+    limits = {limit.name: limit for limit in case_limits(case, spring, sheet.elastic.shear_modulus)}
+    head = [(words(name), value) for name, value in (case.sheet or SheetSpec()).model_dump().items()]
+    without = "Calculated by the formulas of EN 13906-1 and EN 15800, before a run"
+    basis = f"Results of the run {run}, beside the formulas of EN 13906-1 and EN 15800" if run else without
+    kind = "Extension spring" if sheet.pulled else "Torsion spring" if sheet.turns_to else "Compression spring"
+    parts = sections(sheet)
+    missing = [f"{row.label.strip()}: {row.why}" for _, rows in parts for row in rows if _empty(row) and row.why]
+    tables = [(words("Design"), list(_design(sheet, spring, words)))]
+    tables += [(words(title), [_line(row, words) for row in rows if not _empty(row)]) for title, rows in parts]
+    summary = sheet.found.summary if sheet.found else {}
+    tables += [
+        (words("Finished spring"), list(_finished(summary, words))),
+        (words("Limits"), list(_limit_lines(limits.values(), summary, words))),
+        (words("Fatigue of the run"), list(_fatigue(summary, words))),
+    ]
+    return Document(
+        words(kind),
+        head,
+        words(basis),
+        _view(sheet, spring, limits, words),
+        [(title, lines) for title, lines in tables if lines],
+        bool(run),
+        [_translated(panel, words) for panel in _panels(sheet, limits)],
+        [*missing, *remarks],
+        words,
+    )
+
+
+def _empty(row: Row) -> bool:
+    return row.value is None and row.found is None
+
+
+def _line(row: Row, words: Words) -> Line:
+    return Line(words(row.label), words.number(row.value), words.number(row.found), row.unit)
+
+
+def _design(sheet: Sheet, spring: Spring, words: Words) -> Iterator[Line]:
+    s, width = sheet.spring, spring.width * sheet.spring.d
+    if sheet.wire:
+        yield Line(words("wire"), sheet.wire.name)
+    yield Line(words("coiling direction"), words("right" if spring.hand > 0 else "left"))
+    yield Line(words("ends"), words(s.ends))
+    yield Line(words("total turns nt"), words.number(s.turns))
+    yield Line(words("outer diameter De"), words.number(s.D + width), unit="mm")
+    yield Line(words("inner diameter Di"), words.number(s.D - width), unit="mm")
+
+
+def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    verdicts = {entry["name"]: entry for entry in summary.get("limits") or ()}
+    for limit in limits:
+        name, unit = quantity(limit.name)
+        judged = verdicts.get(limit.name)
+        value, mark = ("", "") if judged is None else (words.number(judged["value"]), " ✓" if judged["met"] else " ✗")
+        between = f"{words.number(limit.low)} … {words.number(limit.high)}"
+        name = DRAWN.get(limit.name) or (f"{name} mm" if is_working_number(limit.name) else name)
+        yield Line(words(name), between, value, unit + mark)
+
+
+def _finished(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    """What only a run has: the set, residual stress, and the true stress at the working lengths with its safety."""
+    number = words.number
+    for name, (label, unit) in FINISHED.items():
+        if summary.get(name) is not None:
+            yield Line(words(label), "", number(summary[name]), unit)
+    for state in summary.get("working") or ():
+        if "length_wanted" in state and not state["reason"]:
+            place = f"{state['length_wanted']:g} mm"
+            for name, label, unit in (
+                ("shear_surface_MPa", "greatest shear stress at", "MPa"),
+                ("safety", "safety against the allowable at", ""),
+            ):
+                if state.get(name) is not None:
+                    yield Line(words(f"{label} {place}"), "", number(state[name]), unit)
+
+
+def _fatigue(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
+    for entry in summary.get("fatigue") or ():
+        yield Line(words(f"safety, {entry['criterion']}"), "", words.number(entry["safety"], 3))
+
+
+def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Words) -> Drawing:
+    """The finished spring of a run, or the drawn one, with its dimensions and their tolerances."""
+    s, width = sheet.spring, spring.width * sheet.spring.d
+    after = sheet.at_run("free_length_after_mm") or s.length
+    free = min(after, s.length)
+    shown = spring.at_height(free) if s.solid < free < s.length and not sheet.pulled else spring
+    covered = s.wire is None and en15800.outside(s.d, s.D, s.n, s.length) is None
+    shear = sheet.elastic.shear_modulus
+    given = en15800.tolerances(sheet.grade, shear, s.d, s.D, s.n, s.length) if covered else None
+    number = words.number
+
+    def about(value: float, name: str, spread: float | None) -> str:
+        limit = limits.get(name)
+        if limit is not None:
+            return f"{number(value)} ({number(limit.low)} … {number(limit.high)})"
+        return number(value) if spread is None else f"{number(value)} ± {number(spread, 2)}"
+
+    free_text = about(free, "free_length_after_mm", given.free_length if given else None)
+    levels = [Level(free, f"L0 = {free_text}")]
+    for k, length in enumerate(sorted(sheet.lengths, reverse=not sheet.pulled)[: MOST_LEVELS - 1], 1):
+        force = sheet.found.force_at(length) if sheet.found else None
+        force = sheet.force(length) if force is None else force
+        spread = en15800.force_tolerance(sheet.grade, s.d, s.D, s.n, force) if covered else None
+        text = about(abs(force) if sheet.pulled else force, number_name("force", length), spread)
+        levels.append(Level(length, f"L{k} = {number(length)}   F{k} = {text} N"))
+    if not sheet.pulled and not sheet.turns_to:
+        levels.append(Level(sheet.shortest, f"Lc = {number(sheet.shortest)}"))
+    mean = about(s.D, "", given.coil_diameter if given else None)
+    widths = [
+        (s.D - width, f"Di = {number(s.D - width)}"),
+        (s.D, f"D = {mean}"),
+        (s.D + width, f"De = {number(s.D + width)}"),
+    ]
+    tolerance = sheet.tolerance_of_wire
+    wire = number(s.d) if s.wire is None else f"{number(s.wire.width)} × {number(s.d)}"
+    return view(shown, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""))
+
+
+def _panels(sheet: Sheet, limits: Mapping[str, Limit]) -> Iterator[Panel]:
+    if sheet.turns_to:
+        return
+    yield _characteristic(sheet, limits)
+    if sheet.wire and sheet.endured and sheet.cycle:
+        residual = sheet.found.residual if sheet.found else None
+        made = goodman(f"{sheet.wire.name}", sheet.endured, sheet.cycle, residual)
+        yield replace(made, title="Goodman diagram")
+
+
+def _characteristic(sheet: Sheet, limits: Mapping[str, Limit]) -> Panel:
+    """Force over the travel of the spring as it is drawn: the finished one of a run."""
+    s, sign = sheet.spring, -1.0 if sheet.pulled else 1.0
+    far = max(sheet.lengths, default=s.length) if sheet.pulled else s.solid
+    lengths = np.linspace(s.length, far, POINTS)
+    forces = [sheet.force(length) + sign * -sheet.tension for length in lengths]
+    after = sheet.at_run("free_length_after_mm") or s.length
+    traces = [curve(sign * (s.length - lengths), sign * np.array(forces), GREY, dash="dash", name="by the formula")]
+    if sheet.found:
+        x, y = _last_way(sheet.found.heights, sheet.found.forces)
+        traces.append(curve(*smooth(sign * (after - x), sign * y), 0, name="by the run"))
+    points = []
+    for length in sheet.lengths:
+        force = sheet.found.force_at(length) if sheet.found else None
+        travel = sign * ((s.length if force is None else after) - length)
+        points.append((travel, sign * (sheet.force(length) if force is None else force)))
+        if limit := limits.get(number_name("force", length)):
+            ends = [sign * limit.low, sign * limit.high]
+            traces.append(curve([travel] * 2, ends, 1, marker=7, name="limits", showlegend=limit is _first(limits)))
+    if points:
+        marker: Trace = {"size": 8, "symbol": "square", "color": "#009e73"}
+        x, y = np.array(points).T
+        traces.append(
+            {"type": "scatter", "mode": "markers", "x": x, "y": y, "marker": marker, "name": "working points"}
+        )
+    layout = {"xaxis": axis("travel, mm"), "yaxis": axis("force, N", rangemode="tozero")}
+    return Panel("force", "Force over travel", "Force over travel", traces, layout)
+
+
+def _first(limits: Mapping[str, Limit]) -> Limit | None:
+    return next((limit for name, limit in limits.items() if name.startswith("force_at_")), None)
+
+
+def _last_way(heights: np.ndarray, forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Heights and forces of the last monotone part of the history, the last release of a spring that was released."""
+    ways = np.sign(np.diff(heights))
+    turned = np.flatnonzero(ways[1:] * ways[:-1] < 0.0)
+    start = turned[-1] + 1 if len(turned) else 0
+    kept = np.isfinite(forces[start:])
+    return heights[start:][kept], forces[start:][kept]
+
+
+def _translated(panel: Panel, words: Words) -> Panel:
+    """A panel with its title, legend and axes in another language."""
+    traces = [trace | ({"name": words(trace["name"])} if "name" in trace else {}) for trace in panel.traces]
+    axes = {name: entry | {"title": {"text": words(entry["title"]["text"])}} for name, entry in panel.layout.items()}
+    return replace(panel, title=words(panel.title), traces=traces, layout=axes)

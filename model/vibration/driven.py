@@ -1,0 +1,97 @@
+"""Surge: a spring whose top head is driven over time, from the state at the end of its load program."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from coilset.model.base.errors import InputError
+from coilset.model.contact.base import LEVEL
+from coilset.model.equilibrium.system.heads import AXIAL
+from coilset.model.run.analysis import Analysis
+from coilset.model.standards.wires.law import case_elastic
+from coilset.model.vibration.surge import SPECTRAL_RADIUS, Energies, Motion
+
+MOST_STEPS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Surge:
+    """A driven spring over time.
+
+    Attributes:
+        time: s, shape (steps + 1,); the first is the state at rest.
+        height: between the heads or seats, mm, shape (steps + 1,).
+        top, bottom: forces of the heads or seats on the spring along its axis, compression positive, N, shape
+            (steps + 1,).
+        level: height of the wire's stations above the bottom seat or head, mm, shape (steps + 1, stations).
+        contacts: number of closed contact elements, shape (steps + 1,).
+        kinetic, stored, supplied, lost: energies of Energies, N mm, shape (steps + 1,).
+    """
+
+    time: np.ndarray
+    height: np.ndarray
+    top: np.ndarray
+    bottom: np.ndarray
+    level: np.ndarray
+    contacts: np.ndarray
+    kinetic: np.ndarray
+    stored: np.ndarray
+    supplied: np.ndarray
+    lost: np.ndarray
+
+    def force_error(self, coarser: "Surge") -> float:
+        """Estimated size of the error of both forces by the time step, N, from a run with steps twice as long.
+
+        The method is of second order: a third of the largest difference at common times. Where coils clash, the times
+        of impact differ, and it is an estimate of that.
+        """
+        pairs = ((self.top, coarser.top), (self.bottom, coarser.bottom))
+        return float(max(np.abs(fine[::2] - coarse).max() for fine, coarse in pairs)) / 3.0
+
+
+def surge(
+    analysis: Analysis,
+    height: Callable[[float], float],
+    seconds: float,
+    step: float,
+    spectral_radius: float = SPECTRAL_RADIUS,
+    density: float | None = None,
+) -> Surge:
+    """Drive the top head of a spring over time, from its last equilibrium at rest; collective.
+
+    Args:
+        analysis: Analysis after its load program.
+        height: between the heads or seats, mm, at a time, s; it should begin where the spring is.
+        seconds: duration; step: Δt, s, cut where contacts require it.
+        spectral_radius: ρ of `Motion`.
+        density: kg/mm³; default is that of the case's wire.
+
+    Raises:
+        InputError: duration or step have no meaning.
+        SolveError: no equilibrium was found.
+    """
+    if not 0.0 < step <= seconds or not seconds / step <= MOST_STEPS:
+        raise InputError(f"steps of {step:g} s in {seconds:g} s; give up to {MOST_STEPS:,} steps", "step")
+    if not 0.0 <= spectral_radius <= 1.0:
+        raise InputError(f"{spectral_radius:g} is not possible; give 0 to 1", "spectral_radius")
+    system, control = analysis.system, analysis.control
+    density = case_elastic(analysis.case, analysis.law).density if density is None else density
+    motion = Motion(system, analysis.newton, density, spectral_radius=spectral_radius)
+    rows: list[tuple] = []
+
+    def keep() -> None:
+        reactions, clamped = control.reactions("equilibrium"), control.clamped
+        inertia = [motion.inertia_at(int(control.dofs[freedom])) if clamped else 0.0 for freedom in (AXIAL, LEVEL)]
+        level = system.line.gather(system.state["x"].equilibrium)[:, 2].copy()
+        energies: Energies = motion.energies
+        forces = -(reactions[AXIAL] + inertia[0]), reactions[LEVEL] + inertia[1]
+        numbers = energies.kinetic, energies.stored, energies.supplied, energies.lost
+        rows.append((motion.time, control.height, *forces, level, system.last.closed, *numbers))
+
+    system.restore()
+    keep()
+    for k in range(1, round(seconds / step) + 1):
+        motion.go(lambda time: control.to_height(height(time)), k * step)
+        keep()
+    return Surge(*(np.array(column) for column in zip(*rows, strict=True)))

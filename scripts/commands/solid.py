@@ -1,0 +1,114 @@
+"""`coilset solid`: some turns of a cylindrical spring as a 3D solid, beside the rod."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+from rich.table import Table
+
+from coilset.meshes.solid_grid import SectionGrid
+from coilset.model.base.agreement import on_first_rank
+from coilset.model.base.errors import InputError, SolveError
+from coilset.model.case import read_case
+from coilset.model.results.files.folder import clear, prepare, write_summary
+from coilset.model.results.records.provenance import origin
+from coilset.model.turn import output
+from coilset.model.turn.analysis import GRID, LAYERS, TurnAnalysis, TurnStep
+from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.progress import duration, quantity, without_minus
+from coilset.scripts.terminal.target import results_folder
+
+NOTE = "both are turns between heads that do not rotate, without coils that touch or seats (docs/solid.md)"
+COLUMNS = (  # name, entry of the summary, unit, digits
+    ("set", "set_mm", "mm", 4),
+    ("initial rate", "rate_N_per_mm", "N/mm", 4),
+    ("maximum force", "force_max_N", "N", 3),
+    ("shear stress, inside of coil, loaded", "shear_inside_max_MPa", "MPa", 2),
+    ("residual shear stress, inside of coil", "residual_shear_inside_MPa", "MPa", 2),
+    ("loss of force while held", "load_loss_percent", "%", 3),
+)
+
+
+def solid_case(
+    case_file: str | Path,
+    out: str | Path | None = None,
+    force: bool = False,
+    settings: Sequence[str] = (),
+    turns: float = 1.0,
+    across: int | None = None,
+    layers: int = LAYERS,
+    pictures: bool = True,
+) -> None:
+    """Run some turns of a case as a solid; see `coilset solid --help`; collective.
+
+    Args:
+        case_file: the case file.
+        out: results folder; default results/NAME-OF-CASE-solid.
+        force: replace existing results.
+        settings: texts `key=value` that replace entries of the case file.
+        turns: of the solid.
+        across: elements along a side of the section's core, and rings around it.
+        layers: elements round a turn.
+        pictures: draw the figures.
+
+    Raises:
+        InputError, SolveError: the latter after the results so far are written.
+    """
+    comm, console = MPI.COMM_WORLD, Console(quiet=MPI.COMM_WORLD.rank > 0)
+    case = read_case(case_file, settings)
+    folder = results_folder(out, f"{Path(case_file).stem}-solid")
+    on_first_rank(comm, lambda: prepare(folder, force))
+    try:
+        analysis = TurnAnalysis(case, turns, GRID if across is None else SectionGrid(across, across), layers, comm)
+    except InputError as error:
+        raise error if error.file or error.place.startswith("-") else _placed(error, case_file) from None
+    cost = analysis.cost()
+    console.say(
+        f"{Path(case_file).name}: {turns:g} of {analysis.spring.turns:g} turns as a solid, {cost.unknowns:,} unknowns, "
+        f"{cost.steps} steps: about {duration(cost.seconds)}"
+    )
+    console.print(" step travel, mm    force, N  rod's, N  iter.")
+    failure = None
+    try:
+        analysis.run(lambda step: console.print(_row(step)))
+    except SolveError as error:
+        failure = error
+    summary = output.summarise(analysis)
+    on_first_rank(comm, lambda: _write(folder, analysis, summary, pictures))
+    _conclude(console, summary, folder)
+    if failure is not None:
+        raise failure
+
+
+def _placed(error: InputError, case_file: str | Path) -> InputError:
+    return InputError(error.problem, error.place, case_file)
+
+
+def _row(step: TurnStep) -> str:
+    forces = "".join(f"{without_minus(force, 3):>11}" for force in (step.force_N, step.rod_force_N))
+    return f"{step.number:5d}{step.travel_mm:11.4f} {forces}{step.iterations:6d}"
+
+
+def _write(out: Path, analysis: TurnAnalysis, summary: dict[str, Any], pictures: bool) -> None:
+    clear(out)
+    output.write_history(out, analysis)
+    output.write_fields(out, analysis)
+    write_summary(out, {**summary, "origin": origin(analysis.case)})  # before the pictures, which take longest
+    if pictures and analysis.result.moments:
+        output.write_pictures(out, analysis)
+
+
+def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
+    table = Table(box=None, padding=(0, 2))
+    for head in ("", "solid", "rod", "rod − solid"):
+        table.add_column(head, justify="left" if not head else "right")
+    for name, entry, unit, digits in COLUMNS:
+        here, there = summary[entry], summary["rod"][entry]
+        if here is not None and there is not None:
+            share = "" if not here else f"{100.0 * (there / here - 1.0):+.2f} %"
+            table.add_row(name, quantity(here, unit, digits), quantity(there, unit, digits), share)
+    console.print(table)
+    console.say(NOTE)
+    console.say(f"  results in {out}{os.sep}", whole=True)

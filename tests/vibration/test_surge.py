@@ -1,0 +1,108 @@
+"""Motion in time against closed solutions: a clamped rod, its energy, the first surge frequency, a driven spring."""
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from coilset.model.base.errors import InputError
+from coilset.model.case.case import check
+from coilset.model.run.analysis import Analysis
+from coilset.model.standards.en13906 import natural_frequency
+from coilset.model.vibration.driven import surge
+from coilset.model.vibration.mass import TONNE
+from coilset.model.vibration.modes import natural_modes
+from coilset.model.vibration.surge import Motion
+from coilset.verification.chain import ALL, X, chain, elastic, straight
+
+E, NU, DENSITY = 206e3, 0.3, 7.85e-6
+SPEED = 1e3  # mm/s, of the middle at the beginning
+
+
+def ringing_rod(elements, steps, spectral_radius):
+    """Error of the middle's motion over a period of the first axial half wave, over its amplitude; and the Motion."""
+    length = 200.0
+    frame = chain(straight(length, elements), 2.5, elastic(E, NU), held=[(0, ALL), (elements, ALL)])
+    ω = np.pi / length * np.sqrt(E / (DENSITY * TONNE))
+    velocities = np.zeros(frame.layout.size_local)
+    for k in range(elements + 1):
+        velocities[frame.dof(k, X)] = SPEED * np.sin(np.pi * k / elements)
+    motion = Motion(frame.system, frame.continuation.newton, DENSITY, velocities, spectral_radius)
+    times, found = 2.0 * np.pi / ω * np.arange(1, steps + 1) / steps, []
+    for time in times:
+        motion.go(lambda _: frame.load, time)
+        found.append(frame.moved(elements // 2)[0])
+    return np.array(found) - SPEED / ω * np.sin(ω * times), SPEED / ω, motion
+
+
+def test_axial_vibration_of_a_clamped_rod():
+    """Second order in the step: after a period the phase is behind by 2π (ωΔt)²/12 for the trapezoidal rule, ρ = 1.
+
+    The mesh puts it ahead by 2π (π/n)²/24.
+    """
+    n = 40
+    for steps in (20, 40):
+        error, amplitude, motion = ringing_rod(n, steps, 1.0)
+        late = 2.0 * np.pi * ((2.0 * np.pi / steps) ** 2 / 12.0 - (np.pi / n) ** 2 / 24.0)
+        assert error[-1] / amplitude == pytest.approx(-late, rel=0.06)
+        assert motion.energies.kinetic == pytest.approx(motion.energies.supplied, rel=4e-3)
+        assert abs(motion.energies.lost) < 1e-9 * motion.energies.supplied
+
+
+def test_the_algorithm_takes_energy_with_the_spectral_radius():
+    lost = {}
+    for steps in (20, 40):
+        *_, motion = ringing_rod(20, steps, 0.8)
+        lost[steps] = motion.energies.lost / motion.energies.supplied
+    assert 0.0 < lost[40] < lost[20] < 2e-3
+    assert np.log2(lost[20] / lost[40]) == pytest.approx(2.0, abs=0.3)
+
+
+def spring(turns=10.0, pitch=6.0):
+    mesh = {"elements_per_turn": 8, "section": {"kind": "plane", "radial": 2, "angular": 8}}
+    entries = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": turns, "pitch": pitch}
+    loading = [{"to": {"travel": 1.0}, "steps": 1}]
+    case = {"spring": entries, "material": "elastic", "ends": "clamped", "mesh": mesh, "loading": loading}
+    analysis = Analysis(check(case | {"accuracy": "none"}), detailed=False)
+    analysis.run()
+    return analysis
+
+
+def fitted_frequency(time, values, about):
+    """Frequency of the sine that is nearest to values, within 10 %, Hz."""
+
+    def rest(f):
+        sines = np.stack([np.sin(2.0 * np.pi * f * time), np.cos(2.0 * np.pi * f * time), np.ones_like(time)], axis=1)
+        return np.linalg.lstsq(sines, values, rcond=None)[1][0]
+
+    return minimize_scalar(rest, bounds=(0.9 * about, 1.1 * about), method="bounded").x
+
+
+@pytest.mark.mpi
+def test_first_surge_frequency_of_the_standard():
+    """A push of the head for a period; then both heads' forces differ by the first axial mode, each step too slow."""
+    analysis, steps = spring(), 20
+    period = 1.0 / natural_frequency(analysis.law.G, DENSITY, 5.0, 40.0, 10.0)
+    modes = natural_modes(analysis.system, analysis.control.to_height(analysis.control.height), DENSITY, 4)
+    height = analysis.control.height
+
+    def pushed(time):
+        return height - 0.2 * np.sin(np.pi * min(time / period, 1.0)) ** 2
+
+    driven = surge(analysis, pushed, 5.0 * period, period / steps, density=DENSITY)
+    after = driven.time > 1.5 * period
+    found = fitted_frequency(driven.time[after], (driven.top - driven.bottom)[after], 1.0 / period)
+    axial = modes.frequencies[modes.masses[:, 2].argmax()]
+    assert found == pytest.approx(axial * (1.0 - (2.0 * np.pi / steps) ** 2 / 12.0), rel=2e-3)
+    assert found == pytest.approx(1.0 / period, rel=0.025)
+    assert driven.height[-1] == pytest.approx(height)
+    assert 0.0 < driven.lost[-1] < 0.05 * driven.supplied[-1]
+
+
+def test_a_slow_head_meets_statics():
+    analysis = spring(turns=3.0)
+    height, rate = analysis.control.height, analysis.result.rate
+    driven = surge(analysis, lambda time: height - 0.5 * (1.0 - np.cos(np.pi * time / 0.05)), 0.05, 0.05 / 16)
+    assert driven.top == pytest.approx(driven.bottom, abs=0.02 * rate)
+    assert driven.top - driven.top[0] == pytest.approx(rate * (height - driven.height), rel=0.02, abs=0.02 * rate)
+    with pytest.raises(InputError, match="step"):
+        surge(analysis, lambda time: height, 1.0, 0.0)
