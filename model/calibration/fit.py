@@ -24,10 +24,10 @@ from coilset.model.standards.wires.law import case_law
 from coilset.model.uniform.equivalent import coil
 
 ROUNDS = 8
-SETTLED = 0.2  # squared standard deviations by which the last search may have come nearer
+SETTLED = 0.2  # squared standard deviations by which the last search, or the last whole rods, may have come nearer
 STARTS = {"yield_stress": (0.3, 0.55, 0.8), "rise": (0.15, 0.6), "rate": (60.0, 300.0, 1200.0)}
 SHARE = 0.2  # to begin with: little flows backwards
-SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides
+SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides, in each round
 CORRELATED = 0.4  # of residuals that follow each other, from which on they are no scatter
 UNLIKE = "the law does not follow the readings"
 TESTED = Errors()
@@ -149,7 +149,6 @@ def fit_springs(
     else:
         model, x, found, rounds = _settle(model, _first(model, law.G, held), held)
     if held and like is None:
-        model = model.with_shares(x, SHARES)
         model, x, found, more = _settle(model, x, ())
         rounds += more
     J = model.slopes(x)
@@ -174,16 +173,21 @@ def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np
     Raises:
         SolveError: if the constants do not come to rest.
     """
+    shares, nearest = list(SHARES), math.inf
     for number in range(1, ROUNDS + 1):
-        if len(model.missing) > 1 and model.share is not None:
-            x = minimum(model, x)[0] if number == 1 else x
-            model = model.with_shares(x, [float(x[model.share])])
+        if model.share is not None and not held:
+            x = minimum(model, x)[0] if number == 1 and len(model.missing) > 1 else x
+            shares.append(float(x[model.share]))
+            model = model.with_shares(x, shares)
         else:
             model = model.corrected(x, slopes=number == 2)
         before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x, held)
-        gained = (before - 2.0 * found.cost) / max(_scatter(model, found), 1.0) ** 2
-        if (number > 2 or not held) and gained < SETTLED:
+        small = SETTLED * max(_scatter(model, found), 1.0) ** 2
+        if (number > 2 or not held) and before - 2.0 * found.cost < small:
             return model, x, found, number
+        if model.share is not None and not held and nearest - before < small:
+            return model, x, found, number  # whole rods come no nearer: below its threshold the share changes nothing
+        nearest = min(nearest, before)
     raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")
 
 

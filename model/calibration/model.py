@@ -35,7 +35,7 @@ BOUNDS = {
 TURNS = 2.0  # mm, within which the travel of a turn is sought
 CLOSED = 3.0  # times the least rate so far: beyond it coils have closed, and the wire is not what gives way
 LEAST = 0.005  # of the maximum force, below which a reading is of a spring that stands free
-SAME = 0.02  # difference of shares below which the newer whole rod counts
+SAME = 0.005  # difference of shares below which one whole rod counts for both
 HOPELESS = 1e6  # residuals where there is no equilibrium
 
 
@@ -207,22 +207,25 @@ class Model:
         return replace(self, missing=(Missing(x.copy(), more),), slopes_missing=tuple(known), weights=weights)
 
     def with_shares(self, x: np.ndarray, shares: Sequence[float]) -> "Model":
-        """The model with what whole rods of these shares have more; those of nearly the same share are replaced.
+        """The model with what whole rods of these shares have more, all at the same other unknowns.
+
+        One found at other constants beside one found at these would make the share seem determined: below its
+        threshold all have the same.
 
         Args:
             x: other unknowns.
-            shares: of kinematic hardening.
+            shares: of kinematic hardening; of those that are nearly the same the last counts.
 
         Raises:
             SolveError: if a whole rod finds no equilibrium.
         """
         assert self.share is not None
-        found = list(self.missing)
-        for share in shares:
-            at = x.copy()
-            at[self.share] = share
-            found = [one for one in found if abs(one.at[self.share] - share) > SAME]
-            found.append(Missing(at, self._difference(at, self._whole(at))))
+        found: list[Missing] = []
+        for k, share in enumerate(shares):
+            if all(abs(share - later) > SAME for later in shares[k + 1 :]):
+                at = x.copy()
+                at[self.share] = share
+                found.append(Missing(at, self._difference(at, self._whole(at))))
         return replace(self, missing=tuple(sorted(found, key=lambda one: float(one.at[self.share or 0]))))
 
     def _whole(self, x: np.ndarray) -> list[list[Branch]]:

@@ -14,9 +14,12 @@ from numba import njit, types
 from numba.extending import overload
 
 from coilset.model.base.kernel import KERNEL
-from coilset.model.material.creep import rod as creep_rod
-from coilset.model.material.law.parts import OwnPoints
+from coilset.model.material.creep.flow import TIME
+from coilset.model.material.creep.rod import without_yield
+from coilset.model.material.law.functions import SPIN
+from coilset.model.material.law.parts import OwnPoints, Parts
 from coilset.model.material.point import rod, solid
+from coilset.model.material.point.back_stresses import applies, flow_of_rod
 from coilset.model.material.point.increment import advance
 from coilset.model.material.point.rod_rows import return_map_points
 
@@ -95,6 +98,17 @@ def one_by_one(
 
 
 @njit(**KERNEL)
+def rod_map(law: Parts, old: np.ndarray, e11: float, g12: float, g13: float, new: np.ndarray, C: np.ndarray) -> int:
+    """`increment.advance` with the arguments of the rod's return mapping, in closed form where there is one."""
+    count = -1
+    if law.viscous[TIME] > 0.0 and law.plastic[SPIN] == 0.0:
+        count = without_yield(law, old, (e11, g12, g13), new, C)
+    elif applies(law):
+        count = flow_of_rod(law, old, (e11, g12, g13), new, C)
+    return count if count >= 0 else advance(law, old, np.array([e11, g12, g13]), new, C)
+
+
+@njit(**KERNEL)
 def advance_points(
     law: Any, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
 ) -> bool:
@@ -113,7 +127,7 @@ def _solid_point(law: Any, old: Any, dD: Any, new: Any, C: Any) -> Callable[...,
 def _rod_point(law: Any, old: Any, e11: Any, g12: Any, g13: Any, new: Any, C: Any) -> Callable[..., int]:
     if not isinstance(law, types.BaseNamedTuple):
         return lambda law, old, e11, g12, g13, new, C: rod.return_map(law, old, e11, g12, g13, new, C)
-    return lambda law, old, e11, g12, g13, new, C: creep_rod.rod_map(law, old, e11, g12, g13, new, C)
+    return lambda law, old, e11, g12, g13, new, C: rod_map(law, old, e11, g12, g13, new, C)
 
 
 @overload(any_point, strict=False)
@@ -121,7 +135,9 @@ def _any_point(law: Any, old: Any, de: Any, new: Any, C: Any) -> Callable[..., i
     if isinstance(law, types.BaseNamedTuple):
         if law.instance_class is OwnPoints:
             return lambda law, old, de, new, C: _own_point(law, old, de, new, C)
-        return lambda law, old, de, new, C: advance(law, old, de, new, C)
+        return lambda law, old, de, new, C: (
+            rod_map(law, old, de[0], de[1], de[2], new, C) if de.shape[0] == 3 else advance(law, old, de, new, C)
+        )
     return lambda law, old, de, new, C: (
         rod.return_map(law, old, de[0], de[1], de[2], new, C)
         if de.shape[0] == 3

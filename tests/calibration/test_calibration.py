@@ -93,6 +93,9 @@ def test_constants_return_within_their_intervals(by_uniform_rods):
         assert 0.01 < one.high / one.low - 1.0 < 0.2
     assert outside <= 1
     assert np.mean(scatter) == pytest.approx(1.0, abs=0.08)
+    others = np.delete([one.at for one in found.model.missing], found.model.share, axis=1)
+    assert len(others) >= 5
+    assert np.ptp(others, axis=0).max() == 0.0  # whole rods of all shares have the same other constants, of this set
 
 
 def test_a_share_that_flows_backwards_is_found(by_uniform_rods, monkeypatch):

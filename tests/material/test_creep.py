@@ -10,12 +10,13 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from coilset.model.material import library, points
-from coilset.model.material.creep import rod as creep_rod
 from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
+from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.material.point import increment, rod, solid
+from coilset.model.material.point_law import rod_map
 
 COLD, WARM, ALPHA = 293.15, 473.15, 1.2e-5
 MODULI = {COLD: (80000.0, 0.29), WARM: (74000.0, 0.31)}
@@ -57,7 +58,7 @@ def advance(law, state, de, before, after):
     """One increment over the time between two clocks; state and tangent."""
     new, C = np.full_like(state, np.nan), np.empty((len(de), len(de)))
     over = CreepLaw(law.creep, law.parts()).over(before, after)
-    count = creep_rod.rod_map(over, state, *de, new, C) if len(de) == 3 else increment.advance(over, state, de, new, C)
+    count = rod_map(over, state, *de, new, C) if len(de) == 3 else increment.advance(over, state, de, new, C)
     assert count >= 0
     return new, C
 
@@ -319,7 +320,7 @@ def test_both_ways_through_a_rods_point(entries, yielding):
             middle = creeping.clock(1.0, COLD + 20, before)
             over = creeping.over(middle, creeping.clock(1.0 + hours, COLD + 60, middle))
             de, found = 0.3 * size * _unit(rng, 3), []
-            for way in (lambda *a: creep_rod.rod_map(a[0], a[1], *a[2], *a[3:]), increment.advance):
+            for way in (lambda *a: rod_map(a[0], a[1], *a[2], *a[3:]), increment.advance):
                 new, C = np.full_like(state, np.nan), np.empty((3, 3))
                 assert way(over, state, de, new, C) >= 0
                 found.append((new, C))
@@ -327,7 +328,7 @@ def test_both_ways_through_a_rods_point(entries, yielding):
             np.testing.assert_allclose(new[:3], other[:3], rtol=1e-8, atol=1e-7)
             np.testing.assert_allclose(new[3:], other[3:], rtol=1e-7, atol=1e-14)
             np.testing.assert_allclose(C, D, atol=1e-6 * law.E)
-            n += creep_rod._without_yield(over, state, (de[0], de[1], de[2]), new, C) >= 0
+            n += without_yield(over, state, (de[0], de[1], de[2]), new, C) >= 0
     assert n == 20 if not yielding else 5 <= n < 20
 
 

@@ -10,12 +10,12 @@ from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError
 from coilset.model.material import library
-from coilset.model.material.creep import rod as creep_rod
 from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
 from coilset.model.material.identification import creep_fit
 from coilset.model.material.identification.relaxation_tests import Readings, read_relaxation
 from coilset.model.material.identification.relaxing import loss
 from coilset.model.material.law.file import Creep
+from coilset.model.material.point_law import rod_map
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.time import creep_fit as studies
 
@@ -71,7 +71,7 @@ def test_loss_of_a_wire_in_tension(form, constants):
     clock = creep.clock(0.0, temperature)
     for time in np.geomspace(1e-12, 100.0, 300):
         after = creep.clock(time, temperature, clock)
-        assert creep_rod.rod_map(creep.over(clock, after), state, 0.0, 0.0, 0.0, new, C) >= 0
+        assert rod_map(creep.over(clock, after), state, 0.0, 0.0, 0.0, new, C) >= 0
         state[:], clock = new, after
     tests = Readings("tension", np.array([stress]), np.array([temperature]), np.array([100.0]), np.zeros(1))
     found = exact(law, tests, constants, form).loss[0]

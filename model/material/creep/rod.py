@@ -19,10 +19,10 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.material.creep.flow import POWER, TIME, creep_strain, crept, passes
-from coilset.model.material.law.functions import SPIN, elasticity, functions
+from coilset.model.material.creep.flow import POWER, creep_strain, crept, passes
+from coilset.model.material.law.functions import elasticity, functions
 from coilset.model.material.law.parts import Parts
-from coilset.model.material.point.increment import GAMMA, advance
+from coilset.model.material.point.increment import GAMMA
 from coilset.model.material.point.rod import Vector, active, inner
 
 WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²
@@ -34,17 +34,8 @@ Inverse = namedtuple("Inverse", "D k v")
 
 
 @njit(**KERNEL)
-def rod_map(law: Parts, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray) -> int:
-    """`increment.advance` with the arguments of the rod's return mapping."""
-    count = -1
-    if law.viscous[TIME] > 0.0 and law.plastic[SPIN] == 0.0:
-        count = _without_yield(law, old, (de11, dg12, dg13), new, C)
-    return count if count >= 0 else advance(law, old, np.array([de11, dg12, dg13]), new, C)
-
-
-@njit(**KERNEL)
-def _without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
-    """One increment if no stage yields; else, or if a stage finds no end, -1, and nothing of what is written counts."""
+def without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
+    """`increment.advance` if no stage yields; else, or if one finds no end, -1: nothing of what is written counts."""
     q = law.viscous
     h, after = passes(q, old[7])
     before, change = old[7], after - old[7]
