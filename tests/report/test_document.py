@@ -63,7 +63,7 @@ def test_the_table_has_the_formulas_and_the_run_with_their_words(tmp_path):
     assert rows["Windungsrichtung"][0] == "links"
     assert rows["Druckfeder"][0].startswith("Ergebnisse des Laufs out")
     before = WRITERS[".csv"](made()).decode("utf-8-sig")
-    assert "Calculated by the formulas of EN 13906-1 and EN 15800, before a run" in before
+    assert "Calculated by the formulas of EN 13906-1, EN 15800, before a run" in before
     assert "force at 55 mm,144.7,,N" in before
 
 

@@ -80,8 +80,9 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
     """
     limits = {limit.name: limit for limit in case_limits(case, spring, sheet.elastic.shear_modulus)}
     head = [(words(name), value) for name, value in (case.sheet or SheetSpec()).model_dump().items()]
-    without = "Calculated by the formulas of EN 13906-1 and EN 15800, before a run"
-    basis = f"Results of the run {run}, beside the formulas of EN 13906-1 and EN 15800" if run else without
+    norms = "EN 13906-2" if sheet.pulled else "EN 13906-3" if sheet.turns_to else "EN 13906-1, EN 15800"
+    without = f"Calculated by the formulas of {norms}, before a run"
+    basis = f"Results of the run {run}, beside the formulas of {norms}" if run else without
     kind = "Extension spring" if sheet.pulled else "Torsion spring" if sheet.turns_to else "Compression spring"
     parts = sections(sheet)
     missing = [f"{row.label.strip()}: {row.why}" for _, rows in parts for row in rows if _empty(row) and row.why]
@@ -164,7 +165,8 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
     after = sheet.at_run("free_length_after_mm") or s.length
     free = min(after, s.length)
     shown = spring.at_height(free) if s.solid < free < s.length and not sheet.pulled else spring
-    covered = s.wire is None and en15800.outside(s.d, s.D, s.n, s.length) is None
+    compressed = not (sheet.pulled or sheet.turns_to)  # EN 15800 is for compression springs
+    covered = compressed and s.wire is None and en15800.outside(s.d, s.D, s.n, s.length) is None
     shear = sheet.elastic.shear_modulus
     given = en15800.tolerances(sheet.grade, shear, s.d, s.D, s.n, s.length) if covered else None
     number = words.number
@@ -183,7 +185,7 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
         spread = en15800.force_tolerance(sheet.grade, s.d, s.D, s.n, force) if covered else None
         text = about(abs(force) if sheet.pulled else force, number_name("force", length), spread)
         levels.append(Level(length, f"L{k} = {number(length)}   F{k} = {text} N"))
-    if not sheet.pulled and not sheet.turns_to:
+    if compressed:
         levels.append(Level(sheet.shortest, f"Lc = {number(sheet.shortest)}"))
     mean = about(s.D, "", given.coil_diameter if given else None)
     widths = [

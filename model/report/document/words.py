@@ -22,10 +22,8 @@ GERMAN = {
     "page {} of {}": "Seite {} von {}",
     "formula": "Formel",
     "run": "Lauf",
-    "Calculated by the formulas of EN 13906-1 and EN 15800, before a run": "Berechnet nach EN 13906-1 und EN 15800, "
-    "vor einem Lauf",
-    "Results of the run {}, beside the formulas of EN 13906-1 and EN 15800": "Ergebnisse des Laufs {}, daneben die "
-    "Formeln nach EN 13906-1 und EN 15800",
+    "Calculated by the formulas of {}, before a run": "Berechnet nach {}, vor einem Lauf",
+    "Results of the run {}, beside the formulas of {}": "Ergebnisse des Laufs {}, daneben die Formeln nach {}",
     "Design": "Ausführung",
     "wire": "Draht",
     "coiling direction": "Windungsrichtung",
