@@ -19,7 +19,7 @@ from pathlib import Path
 from coilset.model.runtime.caches import SOURCES, load_without_compiler
 from coilset.model.runtime.processes import end_with_parent, first_rank
 
-STAGES = ("rod", "creep", "uniform", "point")  # see warm.py; the first run of a spring needs only the first
+STAGES = ("rod", "creep", "uniform", "point")  # see precompile.py; the first run of a spring needs only the first
 NOTICE = "coilset: compiling forms and kernels, once after an installation or a change; this takes a minute or two ..."
 NOTICE_OF_PART = "coilset: compiling what this command needs, once ..."
 COMPILE = [sys.executable, "-m", "coilset.scripts", "compile"]

@@ -366,7 +366,7 @@ def compare(
 ) -> None:
     """Compare measured numbers of a spring with the run of its case."""
     announce_compiling()
-    from coilset.scripts.commands.learning.compare import compare as beside
+    from coilset.scripts.commands.fitting.compare import compare as beside
 
     beside(folder, out, force)
 
@@ -425,7 +425,7 @@ def compile_(
     if unknown := set(stages or ()).difference(STAGES):
         raise InputError(f"'{min(unknown)}' is no stage; give {', '.join(STAGES)}", "coilset compile")
     announce_compiling(notice=NOTICE)
-    from coilset.scripts.warm import warm
+    from coilset.scripts.precompile import warm
 
     warm(stages or STAGES, lambda line: print(line, flush=True))
 

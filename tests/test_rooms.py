@@ -68,7 +68,7 @@ PARAMETERS = {
     "scripts/commands/sheet.py": 1,
     "scripts/commands/solve.py": 1,
 }
-CTYPES = {"model/equilibrium/system/aij.py", "model/results/files/two_files.py", "model/runtime/processes.py"}
+CTYPES = {"model/equilibrium/system/aij.py", "model/results/files/alternating.py", "model/runtime/processes.py"}
 
 
 def sources():

@@ -27,7 +27,7 @@ from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.settings import Growth, NewtonControl, StepControl
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
-from coilset.verification.listen import listen
+from coilset.verification.counting import listen
 
 CONTROLS: dict[str, type[NewtonControl] | type[StepControl]] = {"newton": NewtonControl, "steps": StepControl}
 GROWTHS = {

@@ -14,8 +14,8 @@ from coilset.meshes.springs import functions
 from coilset.meshes.springs.checks import refuse
 from coilset.meshes.springs.ends import OPEN, Ends, bottom_and_top, pitch_with_ends, touching_pitch
 from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.manufacture import Peening, Relief
 from coilset.meshes.springs.measured import MeasuredSpec
-from coilset.meshes.springs.past import Peening, Relief
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.shapes import CurvedAxis, DiameterProfile, Length, Profile, profile_function
 from coilset.meshes.springs.wire import WireSpec

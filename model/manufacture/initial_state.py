@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.springs.past import Peening, Relief
+from coilset.meshes.springs.manufacture import Peening, Relief
 from coilset.meshes.springs.placement import STRAIGHT
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError

@@ -6,7 +6,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.case import Case, check
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
-from coilset.model.standards import found
+from coilset.model.standards import from_results
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.rows import Row, sections
 
@@ -15,7 +15,7 @@ def maker_sheet(run: Run) -> list[tuple[str, list[dict[str, Any]]]]:
     """Headings with their rows as texts; none of a spring that the standards have no formulas for."""
     try:
         case: Case = check(run.case)
-        sheet = case_sheet(case, case.spring.build(), found.read(run.folder))
+        sheet = case_sheet(case, case.spring.build(), from_results.read(run.folder))
     except InputError:  # no cylinder, or a file of the case that has gone
         return []
     return [(title, [_texts(row) for row in rows]) for title, rows in sections(sheet)]

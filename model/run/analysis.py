@@ -37,7 +37,7 @@ from coilset.model.run.build import (
     build_setup,
     build_wire,
 )
-from coilset.model.run.companion import estimated, without_errors
+from coilset.model.run.error_estimates import estimated, without_errors
 from coilset.model.run.recorder import Recorder
 from coilset.model.run.working import working_states
 from coilset.model.standards.wires.law import case_law
@@ -63,7 +63,7 @@ class Analysis:
         detailed: also record the seats' reactions and the wire after every step.
         threads: of each rank, see coilset.model.runtime.threads.
         estimates: estimate the errors of mesh, section and contact at the end of a run, see
-            coilset.model.run.companion; never with `accuracy: none`.
+            coilset.model.run.error_estimates; never with `accuracy: none`.
         law: in the place of the case's material; None: that.
         contacts: from the wire's points and the positions of the stations, shape (n, 3), mm, further kinds of contact;
             the errors of mesh, section and contact are then not estimated.

@@ -8,7 +8,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.case import Case
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
-from coilset.model.standards.found import Found
+from coilset.model.standards.from_results import Found
 from coilset.model.standards.rate import tails_compliance
 from coilset.model.standards.sheet import Sheet, pulled_lengths, pulls, rotations, working_lengths
 from coilset.model.standards.wires import wire

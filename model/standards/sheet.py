@@ -8,7 +8,7 @@ from coilset.model.case import Case
 from coilset.model.case.phases import Phase, heads_of
 from coilset.model.standards import en13906, en15800, goodman
 from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.found import Found
+from coilset.model.standards.from_results import Found
 from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import Wire
 

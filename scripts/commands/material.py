@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from coilset.model.base.errors import InputError, naming
-from coilset.scripts.commands.learning import relaxation, springs
-from coilset.scripts.commands.learning.files import files_to_write, folder_of, write_material, write_picture
+from coilset.scripts.commands.fitting import relaxation, springs
+from coilset.scripts.commands.fitting.files import files_to_write, folder_of, write_material, write_picture
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target

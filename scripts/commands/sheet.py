@@ -15,7 +15,7 @@ from coilset.model.figures.panels.goodman import goodman as diagram_of
 from coilset.model.figures.png import write_png
 from coilset.model.report.document.words import Language, Words
 from coilset.model.results.files.folder import make, refuse_to_replace
-from coilset.model.standards import found, goodman
+from coilset.model.standards import from_results, goodman
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.case_warnings import sheet_warnings
 from coilset.model.standards.en15800 import Grade
@@ -66,7 +66,7 @@ def sheet(
     folders = [one for one in targets if one not in files]
     folder = results_folder(folders[-1] if folders else None, Path(case_file).stem)
     pictures = pictures and (bool(folders) or not files)
-    run = found.read(results) if results else None
+    run = from_results.read(results) if results else None
     with naming(case_file):
         spring = case.spring.build()
         made = case_sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
@@ -102,7 +102,7 @@ def sheet(
         console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 
 
-def _otherwise(run: found.Found, case: Case) -> list[str]:
+def _otherwise(run: from_results.Found, case: Case) -> list[str]:
     """Entries of the spring that a run had otherwise than the case."""
     then = run.summary.get("origin", {}).get("case", {}).get("spring", {})
     now = case.spring.model_dump(mode="json")

@@ -128,7 +128,7 @@ from numba.core.dispatcher import Dispatcher
 from coilset.model.run.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.design.surrogate import guess
-from coilset.scripts.warm import PRESSED, _run, short_case, warm
+from coilset.scripts.precompile import PRESSED, _run, short_case, warm
 
 def used():
     kernels = [thing for thing in gc.get_objects() if isinstance(thing, Dispatcher)]
@@ -218,7 +218,7 @@ def test_the_stages_of_compiling_are_shown(monkeypatch, tmp_path, capfd):
 
 
 def test_the_warming_names_each_stage_once():
-    command = "from coilset.scripts.warm import warm; warm(report=print)"
+    command = "from coilset.scripts.precompile import warm; warm(report=print)"
     done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
     lines = done.stdout.splitlines()
     numbers = [f" compiling {k} of {len(lines)}" for k in range(1, len(lines) + 1)]

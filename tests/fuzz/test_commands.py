@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from coilset.model.base.errors import CoilsetError
 from coilset.model.run import build
 from coilset.model.slice import analysis as slices
-from coilset.scripts import main, ranks, running, warm
+from coilset.scripts import main, precompile, ranks, running
 from coilset.scripts.commands import design, material, mesh, report, solid, solve, sweep, verify
 from coilset.scripts.commands import slice as slice_command
 from coilset.scripts.startup import typer
@@ -162,7 +162,7 @@ def place(tmp_path, monkeypatch):
         (slices.SliceAnalysis, "run"),
         (design, "solve"),
         (everyday, "timed"),
-        (warm, "warm"),
+        (precompile, "warm"),
         (report, "open_run"),
         (material, "write_material"),
         (material, "write_picture"),

@@ -16,7 +16,7 @@ from coilset.model.case import check
 from coilset.model.report.document.content import document
 from coilset.model.report.document.output import WRITERS
 from coilset.model.report.document.words import Words
-from coilset.model.standards import found
+from coilset.model.standards import from_results
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.scripts.main import app
 
@@ -41,7 +41,7 @@ def run_of(folder):
     summary |= {"working": states, "force_at_42_N": 290.0}
     (folder / "summary.json").write_text(json.dumps(summary))
     (folder / "history.csv").write_text("seat_height_mm,force_N\n50,210\n40,330\n50,180\n63,0\n")
-    return found.read(folder)
+    return from_results.read(folder)
 
 
 def made(language="en", run=None):

@@ -11,7 +11,7 @@ import xarray as xr
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.standards import found, goodman
+from coilset.model.standards import from_results, goodman
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.cylinder import Cylinder
@@ -96,7 +96,7 @@ def run_folder(folder, residual=-60.0, components=FIBRES):
 
 @pytest.mark.parametrize("components", [FIBRES, WARPING], ids=["fibres", "warping"])
 def test_what_a_run_found(tmp_path, components):
-    run = found.read(run_folder(tmp_path / "run", components=components))
+    run = from_results.read(run_folder(tmp_path / "run", components=components))
     assert run.residual == pytest.approx(-60.0)
     assert run.ring == pytest.approx(0.9)
     assert run.growth == pytest.approx(0.2)
@@ -112,7 +112,7 @@ def test_what_a_run_found(tmp_path, components):
 
 
 def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
-    run = found.read(run_folder(tmp_path / "run"))
+    run = from_results.read(run_folder(tmp_path / "run"))
     shown = rows(Sheet(PRINTED, DM.elastic(5.0), 1260.0, wire("EN 10270-1 DH"), (88.5, 67.5), found=run))
     assert shown["rate R"].found == 16.0
     assert shown["free length L0"].found == 100.0
@@ -132,7 +132,7 @@ def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
 
 
 def test_what_a_run_found_at_block_and_when_it_buckled(tmp_path):
-    run = found.read(run_folder(tmp_path / "run"))
+    run = from_results.read(run_folder(tmp_path / "run"))
     run = replace(
         run,
         heights=np.append(run.heights, 57.5),
@@ -279,10 +279,10 @@ def test_wrong_questions(case, tmp_path):
     folder = run_folder(tmp_path / "run")
     (folder / "history.csv").unlink()
     with pytest.raises(InputError, match=f"^{folder}/history.csv: cannot be read"):
-        found.read(folder)
+        from_results.read(folder)
     (folder / "history.csv").write_text("a,b\n1,2\n", encoding="utf-8")
     with pytest.raises(InputError, match="is not a result of coilset solve"):
-        found.read(folder)
+        from_results.read(folder)
     shutil.rmtree(folder)
 
 

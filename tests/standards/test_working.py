@@ -10,7 +10,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.warning import Warning
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.found import Found
+from coilset.model.standards.from_results import Found
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.steel import STEEL, Elastic

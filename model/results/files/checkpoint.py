@@ -22,9 +22,9 @@ from coilset.model.equilibrium.path.step_control import Position
 from coilset.model.equilibrium.settings import Drive
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.results.files import state_file
+from coilset.model.results.files.alternating import TwoFiles
 from coilset.model.results.files.folder import make, whole
 from coilset.model.results.files.step_journal import StepJournal
-from coilset.model.results.files.two_files import TwoFiles
 from coilset.model.results.records.provenance import changed, provenance
 from coilset.model.results.records.record import BucklingMode, Result, Snapshot
 

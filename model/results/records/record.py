@@ -375,7 +375,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class RunErrors:
-    """Estimated errors of a run by their causes, see coilset.model.run.companion.
+    """Estimated errors of a run by their causes, see coilset.model.run.error_estimates.
 
     Attributes:
         steps: the length of the steps; mesh: that of the elements; section: the points of the sections; contact: the

@@ -35,7 +35,7 @@ from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.results.records.record import Snapshot, Step
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
-from coilset.verification.listen import listen
+from coilset.verification.counting import listen
 from coilset.verification.study import Study
 
 FAST = False

@@ -3,8 +3,8 @@
 import pytest
 
 from coilset.model.base.errors import CoilsetError
-from coilset.model.results.files import two_files
-from coilset.model.results.files.two_files import TwoFiles
+from coilset.model.results.files import alternating
+from coilset.model.results.files.alternating import TwoFiles
 
 
 class Half(Exception):
@@ -18,10 +18,10 @@ def write_half(file):
         raise Half
 
 
-@pytest.mark.parametrize("exchange", [two_files._exchange, lambda one, other: False])
+@pytest.mark.parametrize("exchange", [alternating._exchange, lambda one, other: False])
 def test_what_is_written_in_turns_is_always_complete(tmp_path, monkeypatch, exchange):
     """Also if it becomes shorter, ends half way, or the file system cannot exchange names."""
-    monkeypatch.setattr(two_files, "_exchange", exchange)
+    monkeypatch.setattr(alternating, "_exchange", exchange)
     file = TwoFiles(tmp_path / "state.npz")
     for content in (b"first", b"a longer second", b"3", b"the longest of all", b"fifth"):
         with file.next() as next_one:
@@ -44,6 +44,6 @@ def test_files_change_names_where_the_system_can(tmp_path):
     one, other = tmp_path / "one", tmp_path / "other"
     one.write_text("one")
     other.write_text("other")
-    if not two_files._exchange(one, other):
+    if not alternating._exchange(one, other):
         pytest.skip("this file system cannot exchange names")
     assert (one.read_text(), other.read_text()) == ("other", "one")

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from coilset.scripts.commands.learning.springs import with_cases
+from coilset.scripts.commands.fitting.springs import with_cases
 
 if TYPE_CHECKING:
     from coilset.model.material.identification.creep_fit import CreepFit
