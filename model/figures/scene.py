@@ -89,7 +89,8 @@ def springs(path: str | Path, run: Run) -> None:
             plotter.add_mesh(rod, color="lightgrey", smooth_shading=True, split_sharp_edges=True)
         ends = force_line(run, number)
         if ends is not None:
-            plotter.add_mesh(pv.Tube(*([*ends, place * view.column, 0.0, 0.0]), radius=LINE * across), color="black")
+            first, last = ends + np.array([place * view.column, 0.0, 0.0])
+            plotter.add_mesh(pv.Tube(first, last, radius=LINE * across), color="black")
         places, stress = closed(*(one[None] for one in wires[place]))
         mesh = pv.StructuredGrid(*np.moveaxis(places[0] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
         mesh[name] = stress[0].ravel(order="F")
