@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
 from coilset.model.rod.elements import THESIS
-from coilset.model.rod.kinematics import chord_triads
+from coilset.model.rotations.triads import chord_triads
 from coilset.model.section import surface as surface_values
 from coilset.model.section.surface import Inside
 

@@ -29,13 +29,13 @@ from coilset.model.rod.kinematics import (
     Configuration,
     StressFree,
     Triads,
-    chord_triads,
     displace_nodes,
     section_strains,
 )
 from coilset.model.rod.numbering import Numbering
 from coilset.model.rod.prediction import Prediction
 from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
+from coilset.model.rotations.triads import chord_triads
 from coilset.model.runtime.threads import Threads
 from coilset.model.section import surface
 from coilset.model.section.kinds import make_sections

@@ -30,8 +30,8 @@ from coilset.model.results.limits import case_limits
 from coilset.model.results.records.record import ContactRecord, ForceLine, Limits, Setup
 from coilset.model.rod.elements import ELEMENTS
 from coilset.model.rod.heat import WireHeat, heat_constants
-from coilset.model.rod.kinematics import chord_triads
 from coilset.model.rod.rod import Rod
+from coilset.model.rotations.triads import chord_triads
 from coilset.model.run.coarse_mesh import coarse_mesh_warnings
 from coilset.model.run.effort import Effort, machine_memory
 from coilset.model.runtime.threads import Threads

@@ -9,7 +9,7 @@ from coilset.meshes.springs.placement import section_placement
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
-from coilset.model.rod.kinematics import chord_triads as triads
+from coilset.model.rotations.triads import chord_triads as triads
 from coilset.model.run.analysis import Analysis
 
 ABSCISSAE = np.array([0.2, 0.8])

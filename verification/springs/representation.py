@@ -28,8 +28,8 @@ from coilset.model.figures.png import save
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.rod.elements import THESIS
-from coilset.model.rod.kinematics import chord_triads
 from coilset.model.rod.rod import Rod
+from coilset.model.rotations.triads import chord_triads
 from coilset.model.section.rules import polar
 from coilset.verification.springs.curved_rod import clamped_rate
 

@@ -23,8 +23,8 @@ from coilset.model.equilibrium.system.layout import SEATS, LineLayout
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
 from coilset.model.rod.elements import MIXED
-from coilset.model.rod.kinematics import chord_triads
 from coilset.model.rod.rod import Rod
+from coilset.model.rotations.triads import chord_triads
 from coilset.model.section.rules import polar
 from coilset.model.vibration.modes import Modes, natural_modes
 from coilset.verification.chain import elastic
