@@ -122,7 +122,7 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
         return
     formula = "F0 + R (L − L0)" if sheet.tension else "R (L − L0)"
     for length in sheet.lengths:
-        force = sheet.tension + sheet.pull_rate * (length - s.length)
+        force = -sheet.force(length)
         pull = sheet.found.force_at(length) if sheet.found else None
         found = None if pull is None else abs(pull)
         τ = en13906.stress(force, s.d, s.D)

@@ -67,8 +67,13 @@ class Sheet:
         return 1.0 / (1.0 / self.rate + self.beyond)
 
     def force(self, length: float) -> float:
-        """Nominal force at a length, N: R (L0 − L), or that of coils of variable pitch, which close one by one."""
+        """Nominal force at a length, N: R (L0 − L), or that of coils of variable pitch, which close one by one.
+
+        Of a spring that is pulled it is negative, −F0 − R (L − L0) with the hooks' share in R.
+        """
         travel = self.spring.length - length
+        if self.pulled:
+            return self.pull_rate * travel - self.tension
         if not self.spring.pitches:
             return self.rate * travel
         return self.spring.series_force(travel, self.rate * self.spring.n)

@@ -12,10 +12,11 @@ import pytest
 from coilset.meshes.silhouette import silhouette
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
-from coilset.model.case import check
+from coilset.model.case import check, read_case
 from coilset.model.report.document.content import document
 from coilset.model.report.document.output import WRITERS
 from coilset.model.report.document.words import Words
+from coilset.model.run.examples import EXAMPLES
 from coilset.model.standards import from_results
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.scripts.main import app
@@ -78,6 +79,20 @@ def test_every_label_has_a_german_word(tmp_path):
         assert one.title != other.title or "Goodman" in one.title
         names = [[trace.get("name") for trace in panel.traces] for panel in (one, other)]
         assert all(a != b or a is None for a, b in zip(*names, strict=True)), names
+
+
+def test_an_extension_spring_is_drawn_with_the_forces_of_its_table():
+    """F0 + R s, s from the closed length on: at the body's drawing, in the diagram and in the table."""
+    case = read_case(EXAMPLES / "springs" / "extension.yaml")
+    sheet = case_sheet(case, case.spring.build(), None)
+    found = document(case, case.spring.build(), sheet, "", (), Words("en"))
+    ((_, lines),) = [table for table in found.tables if "EN 13906-2" in table[0]]
+    (stated,) = [float(line.value.replace(",", "")) for line in lines if line.label.startswith("force at")]
+    exact = sheet.tension + sheet.pull_rate * (sheet.lengths[0] - sheet.spring.length)
+    assert stated == pytest.approx(exact, rel=1e-3)
+    formula, points = found.panels[0].traces
+    assert formula["y"][[0, -1]] == pytest.approx([sheet.tension, exact])
+    assert points["y"] == pytest.approx([exact])
 
 
 def test_a_page_is_self_contained_and_escaped():

@@ -49,7 +49,7 @@ class Damping:
             weights = np.where(load.is_held, 0.0, self.layout.weights)
             Drag(self.value * weights, np.zeros_like(weights)).add_stiffness(matrix)
 
-    def learn(self, y: PETSc.Vec, F: PETSc.Vec, load: Load, share: float) -> None:
+    def adjust(self, y: PETSc.Vec, F: PETSc.Vec, load: Load, share: float) -> None:
         """Set the damping of the next correction.
 
         Args:

@@ -212,7 +212,7 @@ class Iteration:
         step = self.search(x, y, self.F, self.load, self.load_factor, self._predicts, self._damped)
         self._step_length = step.contact_limit * step.value
         if not step.ends_on_the_way:
-            self.damping.learn(y, self.F, self.load, self._step_length)
+            self.damping.adjust(y, self.F, self.load, self._step_length)
         always = bool(self.control.predicted_forces)
         use = self._predicts and (step.only_spurious or always or not self.system.touches)
         self._share = self._step_length if use else None

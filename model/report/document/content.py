@@ -213,7 +213,7 @@ def _characteristic(sheet: Sheet, limits: Mapping[str, Limit]) -> Panel:
     s, sign = sheet.spring, -1.0 if sheet.pulled else 1.0
     far = max(sheet.lengths, default=s.length) if sheet.pulled else s.solid
     lengths = np.linspace(s.length, far, POINTS)
-    forces = [sheet.force(length) + sign * -sheet.tension for length in lengths]
+    forces = [sheet.force(length) for length in lengths]
     after = sheet.at_run("free_length_after_mm") or s.length
     traces = [curve(sign * (s.length - lengths), sign * np.array(forces), GREY, dash="dash", name="by the formula")]
     if sheet.found:

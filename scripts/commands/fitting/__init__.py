@@ -1,1 +1,1 @@
-"""Commands that learn from measured springs."""
+"""Commands that fit constants to measured springs and compare with them."""
