@@ -122,8 +122,11 @@ def _killed(command: list[str], environment: Mapping[str, str], journal: Path, r
     with subprocess.Popen(
         command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True
     ) as process:
-        while process.poll() is None and _lines(journal) < records:
+        found = read = 0
+        while process.poll() is None and found < records:
             time.sleep(LOOK_SECONDS)
+            lines, read = _lines(journal, read)
+            found += lines
         if process.poll() not in (None, 0, 3):
             assert process.stderr is not None
             raise CoilsetError(f"{' '.join(command)}: {process.stderr.read().decode(errors='replace').strip()}")
@@ -131,12 +134,13 @@ def _killed(command: list[str], environment: Mapping[str, str], journal: Path, r
             os.killpg(process.pid, signal.SIGKILL)
 
 
-def _lines(path: Path) -> int:
-    """Number of lines of a file, 0 if there is none."""
+def _lines(path: Path, start: int) -> tuple[int, int]:
+    """Number of lines that end behind a place in a file, in bytes, and where the file ends; 0 if there is none."""
     if not path.exists():
-        return 0
+        return 0, 0
     with open(path, "rb") as file:
-        return sum(chunk.count(b"\n") for chunk in iter(lambda: file.read(1 << 24), b""))
+        file.seek(start)
+        return sum(chunk.count(b"\n") for chunk in iter(lambda: file.read(1 << 24), b"")), file.tell()
 
 
 def _checked(command: list[str], environment: Mapping[str, str]) -> int:
