@@ -35,21 +35,21 @@ def test_a_weak_mode_is_damped_by_the_share_that_was_made(share):
     the same share is left, and nearly all along the stiff one."""
     found, K = damping(), np.array([WEAK, 2.0 * STIFF])
     forces = np.array([3.0, 0.0])
-    found.learn(vector([*(forces / K), 7.0]), vector([*forces, 1e6]), FREE, share)
+    found.adjust(vector([*(forces / K), 7.0]), vector([*forces, 1e6]), FREE, share)
     left = K / (K + found.value * WEIGHTS[:2])
     assert left[0] == pytest.approx(share, rel=1e-12)
     assert left[1] > 1.0 - 2e-3
     # whole corrections relax it, until it is nothing beside the mode
     for _relaxed in range(1, 20):
         before = found.value
-        found.learn(vector([*(forces / K), 7.0]), vector([*forces, 1e6]), FREE, 1.0)
+        found.adjust(vector([*(forces / K), 7.0]), vector([*forces, 1e6]), FREE, 1.0)
         assert found.value == pytest.approx(before * RELAX) or (found.value == 0.0 and before * RELAX < NOTHING * WEAK)
     assert found.value == 0.0
 
 
 def test_nothing_is_damped_unless_corrections_are_short():
     found = damping()
-    found.learn(vector([1.0, 1.0, 0.0]), vector([1.0, 1.0, 0.0]), FREE, SHORT)
+    found.adjust(vector([1.0, 1.0, 0.0]), vector([1.0, 1.0, 0.0]), FREE, SHORT)
     assert found.value == 0.0
 
 
