@@ -3,7 +3,7 @@
 An error falls with a power of the factor by which its cause is made finer: that of the mesh between the first and the
 second (docs/rod.md), of the section's points with the second, of contact with the power 0.6 of its bedding's stiffness,
 and that of all steps with the power 2/3 of what one of them may bring in. What a case gives itself is kept. Nothing is
-run again where the accuracy would not be reached within `FINEST`: many times the cost for a number still wrong.
+made finer for a number that `FINEST` would not bring within the accuracy: many times the cost, and still wrong.
 """
 
 import logging
@@ -102,7 +102,7 @@ def left_open(case: Case) -> set[str]:
 
 
 def needed(errors: RunErrors, allowed: Mapping[str, float], left: set[str]) -> dict[str, float]:
-    """By what factor each cause must be finer; empty if nothing need be, or if it would not suffice.
+    """By what factor each cause must be finer, for all numbers that can be brought within their allowed errors so.
 
     Args:
         errors: of the run.
@@ -112,18 +112,20 @@ def needed(errors: RunErrors, allowed: Mapping[str, float], left: set[str]) -> d
     factors: dict[str, float] = {}
     for name, most in allowed.items():
         parts = {cause.name: getattr(getattr(errors, cause.name), name) for cause in fields(RunErrors)}
-        if None in parts.values():
-            return {}
-        if sum(parts.values()) <= most:
-            continue
-        lowered = {cause for cause in left if parts[cause] > SMALL * most}
-        kept = sum(part for cause, part in parts.items() if cause not in lowered)
-        rest = sum(parts[cause] for cause in lowered)
-        share = (AIM * most - kept) / rest if rest else 0.0
-        if share <= 0.0:
-            return {}
-        for cause in lowered:
-            factors[cause] = max(factors.get(cause, 1.0), share ** (-1.0 / ORDERS[cause]))
+        for cause, factor in _of_number(parts, most, left).items():
+            factors[cause] = max(factors.get(cause, 1.0), factor)
+    return factors
+
+
+def _of_number(parts: Mapping[str, float | None], most: float, left: set[str]) -> dict[str, float]:
+    """`needed` for one number with these parts of its error; empty if one of them is not known."""
+    known = {cause: part for cause, part in parts.items() if part is not None}
+    if len(known) < len(parts) or sum(known.values()) <= most:
+        return {}
+    lowered = {cause for cause in left if known[cause] > SMALL * most}
+    rest = sum(known[cause] for cause in lowered)
+    share = (AIM * most - sum(known.values()) + rest) / rest if rest else 0.0
+    factors = {cause: share ** (-1.0 / ORDERS[cause]) for cause in lowered} if share > 0.0 else {}
     return {} if any(factor > FINEST[cause] for cause, factor in factors.items()) else factors
 
 

@@ -10,6 +10,7 @@ from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 from coilset.model.results.records.releases import FREE, is_turned, last_release
+from coilset.model.results.records.stresses import shear_inside
 from coilset.model.results.records.working import working_warnings
 from coilset.model.section import surface
 from coilset.model.standards.working import presetting_warning
@@ -22,6 +23,9 @@ WALL_FORCE = 0.002  # of the force, for which the warning tells the height where
 LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
 ROUNDING = 1e-3  # by which a limit that is given with few digits may be exceeded
 NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
+# Of the accuracy for residual stresses: they follow the strains, which converge by an order less than heights, and a
+# diffractometer sees some MPa.
+STRESS = 5.0
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
@@ -260,8 +264,8 @@ MORE = {
 
 
 def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
-    """Errors by the requested accuracy of the numbers that it governs, by their names in Errors; of a set, at least
-    one that is noticed. None in torsion, whose errors of torque and rotation are not estimated.
+    """Errors by the requested accuracy of the numbers that it governs, by their names in Errors: of a set, at least
+    one that is noticed; of the residual stress inside, STRESS times the accuracy of the largest stress there. None in torsion, whose errors of torque and rotation are not estimated.
 
     Args:
         setup: Setup of a run that estimates errors.
@@ -273,6 +277,8 @@ def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     found = {"force_N": asked * result.greatest_force}
     if release is not None and release.set > 0.0:
         found["set_mm"] = max(asked * release.set, NOTICED * setup.spring.free_length)
+        largest = max(abs(shear_inside(setup, one)[0]) for one in result.snapshots)
+        found["residual_shear_inside_MPa"] = STRESS * asked * largest
     return {name: error for name, error in found.items() if error > 0.0}
 
 
