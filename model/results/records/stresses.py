@@ -1,0 +1,120 @@
+"""Stresses and plastic work on the wire's surface in the snapshots of a run: the largest, and where."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from coilset.model.results.records.record import Result, Setup, Snapshot
+from coilset.model.section import surface
+
+
+def is_middle(setup: Setup) -> np.ndarray:
+    """Whether sections are in the middle turns: a turn from the tips, or from the end coils of closed ends."""
+    spring = setup.spring
+    first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
+    return surface.is_middle(setup.section_turns, first, last)
+
+
+def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.Peak:
+    """The maximum shear stress on the wire's surface in the middle turns or, on request, in the end turns.
+
+    The surface value is a property of the spring. The core holds a larger residual shear stress, but the value found
+    there depends on the position of the section points.
+    """
+    among = is_middle(setup) != ends
+    stress = surface.shear(snapshot.surface_state, snapshot.components)
+    return surface.peak(stress[among], setup.section_turns[among], setup.inside)
+
+
+def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, Any]:
+    """The maximum residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees.
+
+    None before the release, and of half a turn or less, all of which is its middle.
+    """
+    top = None if snapshot is None or is_middle(setup).all() else shear_peak(setup, snapshot, ends=True)
+    value, turn, angle = (None,) * 3 if top is None else (top.value, top.turn, top.angle)
+    return {
+        "residual_shear_ends_max_MPa": value,
+        "residual_shear_ends_max_turn": turn,
+        "residual_shear_ends_max_angle_deg": angle,
+    }
+
+
+def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
+    """Shear stress on the wire's surface at the inside of the coil, MPa, positive as in a compressed spring; its turn.
+
+    The value of largest magnitude in the middle turns; of several that are equal but for rounding, as in a spring whose
+    halves are alike, the first.
+    """
+    among = is_middle(setup)
+    values = setup.inside.shear(snapshot.surface_state, snapshot.components)[among]
+    size = np.abs(values)
+    at = int(np.argmax(size >= (1.0 - surface.TIE) * size.max()))
+    return float(values[at]), float(setup.section_turns[among][at])
+
+
+def bending(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+    """Stress along the wire on the surface at the inside and the outside of the coil, MPa, positive in tension.
+
+    Of each the value of largest magnitude in the middle turns and the snapshots; None without snapshots.
+    """
+    found: dict[str, Any] = {}
+    for name, angle in (("inside", 0.0), ("outside", math.pi)):
+        values = []
+        for shot in snapshots:
+            along = surface.component(shot.surface_state, shot.components, "s11")[is_middle(setup)]
+            place = round((setup.inside.angle + angle) / (2.0 * math.pi) * along.shape[-1]) % along.shape[-1]
+            values += [float(along[..., place].min()), float(along[..., place].max())]
+        found[f"{prefix}bending_{name}_MPa"] = max(values, key=abs, default=None)
+    return found
+
+
+def beyond_coil(setup: Setup, released: Snapshot | None, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+    """Stress along the wire of hooks or arms, MPa, positive in tension, and its turn; the residual one at that place.
+
+    The value of largest magnitude on their surface in any snapshot; None without hooks or arms.
+    """
+    names = "tail_stress_max_MPa", "tail_stress_max_turn", "residual_tail_stress_MPa"
+    among = (setup.section_turns < 0.0) | (setup.section_turns > setup.spring.turns)
+    if not among.any():
+        return dict.fromkeys(names)
+
+    def along(shot: Snapshot) -> np.ndarray:
+        return surface.component(shot.surface_state, shot.components, "s11")[among]
+
+    stress = max(map(along, snapshots), key=lambda values: float(np.abs(values).max()))
+    at, angle = np.unravel_index(np.abs(stress).argmax(), stress.shape)
+    residual = None if released is None else float(along(released)[at, angle])
+    return dict(zip(names, (float(stress[at, angle]), float(setup.section_turns[among][at]), residual), strict=True))
+
+
+def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
+    """The maximum shear and equivalent stress on the surface in the snapshots, MPa, and where: turn, and angle from
+    the inside of the coil, degrees; None without snapshots."""
+    found = {}
+    for name, stress in (("shear", surface.shear), ("equivalent", surface.equivalent)):
+        tops = [
+            surface.peak(stress(shot.surface_state, shot.components), setup.section_turns, setup.inside)
+            for shot in snapshots
+        ]
+        top = max(tops, key=lambda one: one.value, default=None)
+        for unit, value in (("MPa", "value"), ("turn", "turn"), ("angle_deg", "angle")):
+            found[f"{prefix}{name}_surface_max_{unit}"] = getattr(top, value) if top else None
+    return found
+
+
+def plastic_work(setup: Setup, result: Result) -> dict[str, Any]:
+    """The maximum plastic work b* on the surface, where it is, and up to which the material's constants are valid."""
+    tops = [
+        surface.peak(surface.component(shot.surface_state, shot.components, "b"), setup.section_turns, setup.inside)
+        for shot in result.snapshots
+    ]
+    top = max(tops, key=lambda one: one.value)
+    return {
+        "plastic_work_max_N_per_mm2": max([top.value, *(step.plastic_work_max_N_per_mm2 for step in result.steps)]),
+        "plastic_work_max_turn": top.turn if top.value > 0.0 else None,
+        "plastic_work_max_angle_deg": top.angle if top.value > 0.0 else None,
+        "plastic_work_known_to_N_per_mm2": setup.limits.plastic_work,
+    }
