@@ -265,7 +265,8 @@ MORE = {
 
 def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     """Errors by the requested accuracy of the numbers that it governs, by their names in Errors: of a set, at least
-    one that is noticed; of the residual stress inside, STRESS times the accuracy of the largest stress there. None in torsion, whose errors of torque and rotation are not estimated.
+    one that is noticed; of the residual stress inside, STRESS times the accuracy of the largest stress there. None in
+    torsion, whose errors of torque and rotation are not estimated.
 
     Args:
         setup: Setup of a run that estimates errors.
@@ -287,7 +288,7 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
     asked, errors = setup.limits.accuracy, result.errors
     if asked is None or errors is None or any(_step_error(setup, result)):
         return
-    worst: dict[str, float] = {}
+    worst, words = dict[str, float](), list[str]()
     for name, allowed in allowed_errors(setup, result).items():
         error = getattr(errors.total, name)
         if error is None:
@@ -299,14 +300,16 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
             return
         if error > allowed:
             worst[name] = asked * error / allowed
+            stress = name == "residual_shear_inside_MPa"
+            size = f"{error:.2g} MPa" if stress else f"{100 * worst[name]:.2g} %"
+            words.append(f"{size} of the {NUMBERS[name]}")
     if worst:
         largest = max(worst, key=lambda name: worst[name])
         cause = errors.largest(largest)
-        which = " and ".join(f"{100 * part:.2g} % of the {NUMBERS[name]}" for name, part in worst.items())
         message = (
-            f"the estimated error is {which}, mostly because of the {CAUSES[cause]}, more than the case's accuracy of "
-            f"{100 * asked:.2g} %; {MORE[cause]}, and coilset solve runs again by itself where the case leaves that "
-            "out and it suffices"
+            f"the estimated error is {' and '.join(words)}, mostly because of the {CAUSES[cause]}, more than the case's "
+            f"accuracy of {100 * asked:.2g} % allows; {MORE[cause]}, and coilset solve runs again by itself where the "
+            "case leaves that out and it suffices"
         )
         yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], asked)
 
