@@ -134,7 +134,7 @@ class ContactSpec(Strict):
     bedding: Annotated[
         float | None,
         Unit("N/mm²"),
-        Field(gt=0, description="contact stiffness: force per length and penetration, N/mm per mm; default E/40"),
+        Field(gt=0, description="contact stiffness: force per length and penetration, N/mm per mm; default E/4"),
     ] = None
     arbor: Annotated[
         float | None, Unit("mm"), Field(gt=0, description="diameter of a smooth arbor inside the coils, mm")

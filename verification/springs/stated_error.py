@@ -4,9 +4,9 @@ The references are in `stated_error.yaml`. This makes those of more springs, and
 
     scripts/coilset python verification/springs/stated_error.py 12 40 77
 
-with 64 elements a turn, 16 × 64 section points, an accuracy of 0.02 % and a bedding as stiff as Young's modulus, so
-that coils and seats penetrate each other by a fortieth of the usual. Each takes minutes: `numbers(60)` are the springs
-with the fewest turns among the first of the generator, in which no section warps freely.
+with 64 elements a turn, 16 × 64 section points, an accuracy of 0.02 % and a bedding as stiff as Young's modulus, four
+times the default. Each takes minutes: `numbers(60)` are the springs with the fewest turns among the first of the
+generator, in which no section warps freely.
 """
 
 import sys

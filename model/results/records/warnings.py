@@ -308,8 +308,8 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
         cause = errors.largest(largest)
         message = (
             f"the estimated error is {' and '.join(words)}, mostly because of the {CAUSES[cause]}, more than the "
-            f"case's accuracy of {100 * asked:.2g} % allows; {MORE[cause]}, and coilset solve runs again by itself where the "
-            "case leaves that out and it suffices"
+            f"case's accuracy of {100 * asked:.2g} % allows; {MORE[cause]}, and coilset solve runs again by itself "
+            "where the case leaves that out and it suffices"
         )
         yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], asked)
 

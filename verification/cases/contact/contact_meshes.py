@@ -5,7 +5,7 @@ its path forks. The three springs of `examples/springs` run at 16, 32 and 64 ele
 steps each way and with automatic ones. A failed solve is repeated from rest, or its step is cut; both are counted.
 Steps that were solved but cut because their error was too large or their state unstable are not. The table also shows
 how often Newton's method did not converge within a step and a part of it was balanced first. The contact stiffness,
-E/40, is the same for all meshes, so that finer ones converge to one state. Two things are judged: the set, which must
+E/4, is the same for all meshes, so that finer ones converge to one state. Two things are judged: the set, which must
 change by less than 1 % from 32 to 64 elements, and the characteristic at the heights of the equal steps, whose change
 from 32 to 64 must be below 1 % of the maximum force and less than from 16 to 32. The force at block depends on the
 positions of several hundred contacts to within a few thousandths of a millimetre: it converges last.

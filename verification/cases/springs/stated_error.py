@@ -2,7 +2,7 @@
 
 Force at 50, 90 and 100 % of the travel, set and residual shear stress inside, each with the error that the run states,
 against references with 64 elements a turn, 16 × 64 section points, an accuracy of 0.02 % and a bedding as stiff as E,
-forty times the default (`verification/springs/stated_error.py` makes them, `stated_error.yaml` holds them).
+four times the default (`verification/springs/stated_error.py` makes them, `stated_error.yaml` holds them).
 
 Tolerances: at most 5 % of the true errors are above the stated ones, and the median of stated over true is at most 5.
 """
