@@ -15,10 +15,9 @@ from coilset.model.contact.gap import Gaps
 from coilset.model.contact.hold import Groove, Guide, Mount
 from coilset.model.contact.seat import Seat
 
-# Default bedding is E/4 (docs/methods.md has what it costs). Wire that flattens where
-# it touches wire along a line is stiffer, and costs more (docs/contact.md).
+# Default bedding is E/4: wires that flatten where they touch along a line have E/7.5 to E/4.9 (docs/contact.md).
 MODULUS_OF_BEDDING = 4.0
-FREE_TILT_OF_BEDDING = 1e-7  # stiffness of a joint that is free to tilt, relative to that of the coil's bedding, b r³
+FREE_TILT_OF_BEDDING = 1e-8  # stiffness of a joint that is free to tilt, relative to that of the coil's bedding, b r³
 ASIDE_OF_DIAMETER = 0.1  # nodes of a gap element may be so far beside each other: they meet 0.5 % of a diameter late
 GUIDES = "arbor", "sleeve"
 ONSET_OF_DIAMETER = 1e-3  # distance over which contact sets in, in wire diameters

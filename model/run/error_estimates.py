@@ -36,7 +36,7 @@ from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.manufacture.initial_state import give_sections_past
 from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step
 from coilset.model.results.records.releases import Release, last_release
-from coilset.model.results.records.stresses import shear_inside
+from coilset.model.results.records.stresses import change_of_sign, shear_inside
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import polar
 
@@ -257,8 +257,10 @@ def _judged(
         sets[2] = _by_contact(seen, release)
         slope, other = _shear_slope(setup, result, release), shear_inside(companion.setup, theirs.snapshot)[0]
         shears = [None if one is None else slope * one for one in sets]
-        shears[0] = SHEAR * abs(other - shear_inside(setup, release.snapshot)[0])
+        by_mesh = SHEAR * abs(other - shear_inside(setup, release.snapshot)[0])
         shears[1] = None if shears[1] is None else shears[1] + surface
+        by_mesh += change_of_sign(setup, release.snapshot, by_mesh + sum(one or 0.0 for one in shears[1:]))
+        shears[0] = by_mesh
     return tuple(steps), RunErrors(mine, *(Errors(*values) for values in zip(forces, sets, shears, strict=True)))
 
 

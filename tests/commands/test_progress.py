@@ -14,6 +14,7 @@ SEATS = ["both seats"]
 CASE = """
 spring: {wire_diameter: 5, mean_diameter: 40, turns: 2.5, pitch: 12}
 material: ck15
+contact: {bedding: 5250}
 loading: [{to: block, steps: 3}, {to: {force: 0}, steps: 2}]
 mesh: {elements_per_turn: 8, section: {kind: curved, radial: 2, angular: 6}}
 """

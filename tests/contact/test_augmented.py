@@ -75,7 +75,7 @@ def test_stiffness_is_the_derivative_of_the_forces_of_offset_points(points, heli
 
 def test_offsets_are_part_of_the_state(tmp_path):
     """A run resumed at its third step ends as the undisturbed one does, bit by bit; a failed step leaves no trace."""
-    whole = analyse(penetration=1e-3)
+    whole = analyse(bedding=5250.0, penetration=1e-3)
     whole.run()
 
     class Stop(Exception):
@@ -85,7 +85,7 @@ def test_offsets_are_part_of_the_state(tmp_path):
         if step.number == 6:
             raise Stop
 
-    first = analyse(penetration=1e-3)
+    first = analyse(bedding=5250.0, penetration=1e-3)
     with pytest.raises(Stop):
         first.run(stop, Checkpoint(tmp_path, first.case).save)
     seat = next(contact for contact in first.system.contacts if contact.end == "top")
@@ -96,7 +96,7 @@ def test_offsets_are_part_of_the_state(tmp_path):
     first.system.restore()
     np.testing.assert_array_equal(seat.memory["multiplier_offset"], committed)
 
-    second = analyse(penetration=1e-3)
+    second = analyse(bedding=5250.0, penetration=1e-3)
     second.resume(Checkpoint(tmp_path, second.case).load(second.comm))
     second.run()
     assert [step.force_N for step in second.result.steps] == [step.force_N for step in whole.result.steps]

@@ -64,7 +64,7 @@ def test_the_sections_error_is_that_of_a_finer_rule(clamped, example):
 
 def test_contact_is_off_by_what_a_stiffer_bedding_changes(example):
     _, summary = analysed(example)
-    _, stiff = analysed(example, "contact.bedding=105000", estimates=False)  # twenty times the default
+    _, stiff = analysed(example, "contact.bedding=1050000", estimates=False)  # twenty times the default
     true = stiff["force_max_N"] - summary["force_max_N"]
     assert 0.5 < summary["estimated_errors"]["contact"]["force_N"] / true < 2.0
 

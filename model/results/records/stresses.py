@@ -48,11 +48,22 @@ def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
     The value of largest magnitude in the middle turns; of several that are equal but for rounding, as in a spring whose
     halves are alike, the first.
     """
-    among = is_middle(setup)
-    values = setup.inside.shear(snapshot.surface_state, snapshot.components)[among]
+    values = _shear_inside(setup, snapshot)
     size = np.abs(values)
     at = int(np.argmax(size >= (1.0 - surface.TIE) * size.max()))
-    return float(values[at]), float(setup.section_turns[among][at])
+    return float(values[at]), float(setup.section_turns[is_middle(setup)][at])
+
+
+def change_of_sign(setup: Setup, snapshot: Snapshot, error: float) -> float:
+    """By how much `shear_inside` changes, MPa, where the largest value of the other sign replaces it; 0 where that is
+    smaller by more than the error of both."""
+    values = _shear_inside(setup, snapshot)
+    largest = sorted((abs(float(values.min(initial=0.0))), float(values.max(initial=0.0))))
+    return sum(largest) if 0.0 < largest[1] < largest[0] + 2.0 * error else 0.0
+
+
+def _shear_inside(setup: Setup, snapshot: Snapshot) -> np.ndarray:
+    return setup.inside.shear(snapshot.surface_state, snapshot.components)[is_middle(setup)]
 
 
 def bending(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
