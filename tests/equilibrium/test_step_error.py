@@ -124,9 +124,9 @@ def test_holds_in_which_hardly_anything_creeps_keep_the_error_of_those_before(ex
 
 
 def test_the_example_is_within_its_accuracy(example):
-    """Against Richardson's limit of 24 and 48 equal steps each way, with the error of second order."""
+    """Against Richardson's limit of 48 and 96 equal steps each way, with the error of second order."""
     (_, coarse), (_, fine) = (
-        run(example, f"loading.0.steps={steps}", f"loading.1.steps={steps}") for steps in (24, 48)
+        run(example, f"loading.0.steps={steps}", f"loading.1.steps={steps}") for steps in (48, 96)
     )
     _, found = run(example)
     for name, accuracy in (("force_max_N", 0.002), ("set_mm", 0.001)):

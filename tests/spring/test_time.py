@@ -124,15 +124,15 @@ def viscous(tmp_path):
 def test_a_fast_press_bears_more_and_then_relaxes(viscous):
     """Infinitely slow without seconds, as without the entry; fast, the force is higher, and falls to it in a hold.
 
-    To 2.5 % above in six steps, 2.0 in 12 and 1.6 in 24; 0.3 in six with the thesis's element.
+    To 0.6 % above in six steps. At 20 mm the spring is solid, and its force, a hundred times as large, says little.
     The law with a rate is integrated otherwise: before the coils close forces differ by 1.5e-4, in 12 steps by 3.7e-5.
     """
-    press = {"to": {"travel": 20}, "steps": 6}
+    press = {"to": {"travel": 18}, "steps": 6}
     still = analysis_of([press], material=viscous, temperature=293.15).run().steps[-1]
     plain = analysis_of([press], material="linear_isotropic", temperature=293.15).run().steps[-1]
     slow = analysis_of([press | {"seconds": 1e9}], material=viscous, temperature=293.15).run().steps[-1]
     assert still.force_N == pytest.approx(plain.force_N, rel=2e-4)  # another integration
-    assert plain.force_N < slow.force_N < 1.02 * plain.force_N
+    assert plain.force_N < slow.force_N < 1.01 * plain.force_N
     program = [press | {"seconds": 1.0}, {"hold": {"hours": 1e6}, "steps": 12}]
     steps = analysis_of(program, material=viscous, temperature=293.15).run().steps
     assert steps[5].hours == pytest.approx(1.0 / 3600.0)
@@ -140,7 +140,7 @@ def test_a_fast_press_bears_more_and_then_relaxes(viscous):
     forces = [step.force_N for step in steps[5:]]
     assert (np.diff(forces) < 0.0).all()
     assert forces[-1] < 0.98 * forces[0]
-    assert forces[-1] < 1.03 * plain.force_N
+    assert forces[-1] < 1.01 * plain.force_N
 
 
 @pytest.mark.parametrize(
