@@ -188,14 +188,18 @@ def mesh(
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     write: list[str] = typer.Option(
-        [], callback=file_targets, metavar="FILE", help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..."
+        [],
+        callback=file_targets,
+        metavar="FILE",
+        help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..., or a solid body: .step",
     ),
+    height: float = typer.Option(None, help="between the seats, mm [default: unloaded]"),
     pictures: bool = typer.Option(True, help="draw the spring"),
 ) -> None:
     """Print the data of a spring, draw it, and write its mesh."""
     from coilset.scripts.commands.mesh import mesh as mesh_case
 
-    mesh_case(case, out, force, settings, write, pictures)
+    mesh_case(case, out, force, settings, write, pictures, height)
 
 
 @app.command()
@@ -210,10 +214,11 @@ def sheet(
     out: list[str] = typer.Option(
         [],
         callback=sheet_targets,
-        help="sheet.html, .pdf, .csv or .dxf, or the folder of the Goodman diagram; may be given several times "
+        help="sheet.html, .pdf, .csv, .dxf or .step, or the folder of the Goodman diagram; may be given several times "
         "[default: results/NAME-OF-CASE]",
     ),
     language: Language = typer.Option("en", help="of the files: en or de"),
+    height: float = typer.Option(None, help="of the spring in the .step file, mm [default: that of the drawing]"),
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite an existing figure"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     wires: bool = typer.Option(False, "--wires", help="list the standard wires, or all numbers of --wire"),
@@ -226,7 +231,19 @@ def sheet(
         sheets.list_wires(wire)
     else:
         sheets.sheet(
-            case, results, wire, length, grade, surface, dynamic, out, language.value, force, settings, pictures
+            case,
+            results,
+            wire,
+            length,
+            grade,
+            surface,
+            dynamic,
+            out,
+            language.value,
+            force,
+            settings,
+            pictures,
+            height,
         )
 
 
