@@ -1,14 +1,17 @@
 """Conditions of a design: the number of a run that each concerns, where it is read, and its deviation."""
 
 import copy
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from coilset.model.base.errors import InputError
+from coilset.model.case.case import Case, check
 from coilset.model.design.file import Conditions, DesignFile, Limits
+from coilset.model.results.limits import case_limits
 from coilset.model.results.records.units import quantity, unit_of
-from coilset.model.results.records.working import place_of
+from coilset.model.results.records.working import is_working_number, place_of
+from coilset.model.standards.wires.law import case_elastic, case_law
 
 GROUP = "such_that."  # before the names of conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
@@ -104,6 +107,7 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
     _visit(data, numbers)
     missing = sorted({at.height for at in spec.such_that.force_at if _phase(program, at.height) is None}, reverse=True)
     released = _is_release(program[-1])
+    found += _of_case(base, data, {one.subject for one in found})
     needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
     if not released and (needing or missing):
         name = needing[0] if needing else f"{GROUP}force_at"
@@ -118,6 +122,28 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
         name = f"{GROUP}force_at" + (f".{number}" if len(spec.such_that.force_at) > 1 else "")
         found += _conditions(name, at.N, at.height, _phase(program, at.height))
     return found, data
+
+
+def _of_case(base: Mapping[str, Any], data: dict[str, Any], given: set[str | float]) -> Iterator[Condition]:
+    """The limits of the case, of results on which the file has no condition of its own; `data` as of `_visit`."""
+    case: Case = check(copy.deepcopy(dict(base)))
+    if not case.limits:
+        return
+    spring = case.spring.build()
+    shear_modulus = case_elastic(case, case_law(case, spring)).shear_modulus
+    for (entry, limit), own in zip(case.limits.items(), case_limits(case, spring, shear_modulus), strict=True):
+        place = f"limits.{entry}"
+        if isinstance(limit, str):
+            raise InputError(f"the middle of {limit} moves with the spring; give its nominal, or two numbers", place)
+        if not is_working_number(own.name) and own.name not in Conditions.model_fields:
+            raise InputError("a design has no condition on it; leave it out", place)
+        if own.low == 0.0 or own.high == 0.0:
+            raise InputError("must not be 0: conditions are met relative to their size", place)
+        working = is_working_number(own.name)
+        name = f"{GROUP}working.{own.name}" if working else f"{GROUP}{own.name}"
+        if name not in given:
+            _visit(data, [own.name] if working else [])
+            yield from _conditions(name, Limits(at_least=own.low, at_most=own.high))
 
 
 def _visit(data: dict[str, Any], names: Iterable[str]) -> None:

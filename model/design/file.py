@@ -9,7 +9,7 @@ from annotated_types import Unit
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.model.base.entry import Strict, check_entries, shortened
-from coilset.model.base.errors import InputError
+from coilset.model.base.errors import InputError, naming
 from coilset.model.base.yaml import read_data
 from coilset.model.case.case import Case, check, read_case_data
 from coilset.model.case.settings import located
@@ -138,29 +138,43 @@ class DesignFile(Strict):
             description="the unknowns: entry of the case, or a name with `entries`, → range, factor or choices",
         ),
     ]
-    such_that: Annotated[Conditions, Field(description="the conditions: results that the run is to have")]
+    such_that: Annotated[
+        Conditions,
+        Field(
+            default_factory=Conditions.model_construct,
+            description="the conditions: results that the run is to have, beside the limits of the case",
+        ),
+    ]
     trade_offs: Annotated[
         dict[Name, Annotated[list[Any], Field(min_length=1)]],
         Field(default_factory=dict, description="entry of the case → other values for which the design is estimated"),
     ]
 
     @model_validator(mode="after")
-    def _enough(self) -> Self:
+    def _driven_once(self) -> Self:
         refuse_twice(self.find)
-        conditions = sum(
-            len(value) if isinstance(value, list | dict) else value is not None for _, value in self.such_that
-        )
-        ranges = [name for name, one in self.find.items() if not isinstance(one, Choices)]
-        if conditions < len(ranges):
-            raise ValueError(
-                f"{len(ranges)} unknowns and {conditions} condition(s): give as many conditions as "
-                "unknowns, or more, which are met as well as they can be (least squares)"
-            )
         driven = {entry: name for name, one in self.find.items() for entry in one.driven(name)}
         for name in self.trade_offs:
             if name in driven:
                 raise ValueError(f"trade_offs.{name}: is an unknown; give an entry that is not")
         return self
+
+
+    def refuse_too_few(self, limits: int) -> None:
+        """Reject fewer conditions than unknowns; so many `limits` of the case are conditions too.
+
+        Raises:
+            InputError: with both numbers.
+        """
+        conditions = limits + sum(
+            len(value) if isinstance(value, list | dict) else value is not None for _, value in self.such_that
+        )
+        ranges = [name for name, one in self.find.items() if not isinstance(one, Choices)]
+        if conditions < len(ranges):
+            raise InputError(
+                f"{len(ranges)} unknowns and {conditions} condition(s): give as many conditions as "
+                "unknowns, or more, which are met as well as they can be (least squares)"
+            )
 
 
 @dataclass(frozen=True)
@@ -203,5 +217,7 @@ def read_design_file(path: str | Path) -> Design:
             )
         base, folder = read_case_data(folder / spec.case), (folder / spec.case).parent
     base = copy.deepcopy({name: located(name, value, folder.absolute()) for name, value in base.items()})
-    check(base, path if spec.case is None else folder / Path(spec.case).name)
+    case: Case = check(base, path if spec.case is None else folder / Path(spec.case).name)
+    with naming(path):
+        spec.refuse_too_few(len(case.limits or ()))
     return Design(spec, base, path)
