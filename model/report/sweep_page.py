@@ -33,7 +33,8 @@ def write_sweep_report(folder: str | Path) -> Path:
         The file.
 
     Raises:
-        InputError: if the data cannot be read, or a file that the case names has gone. CoilsetError: if the page cannot be written.
+        InputError: if the data cannot be read, or a file that the case names has gone. CoilsetError: if the page
+            cannot be written.
     """
     folder = Path(folder)
     with reading(folder / FILE):

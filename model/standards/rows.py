@@ -312,12 +312,13 @@ def _endurance(sheet: Sheet) -> Iterator[Row]:
         return
     residual = sheet.found.residual if sheet.found else None
     shifted = None if residual is None else endured.stress_range(cycle.shifted(residual).lower)
-    why = (
-        ""
-        if residual is None
-        else (f"with the residual {residual:.1f} MPa; the lines hold for set springs, so it may count twice")
-    )
-    formula = f"Goodman, {endured.times} times, {endured.surface}"
+    counted = {
+        "preset": "the line is of preset springs, so it may count twice",
+        "not preset": "the line is of springs that were not preset, so it counts once",
+        "not stated": "whether the line is of preset springs is not stated, so it may count twice",
+    }
+    why = "" if residual is None else f"with the residual {residual:.1f} MPa; {counted[endured.springs]}"
+    formula = f"Goodman, {endured.times} times, {endured.surface}, {endured.tested}"
     yield Row("permissible stress range", endured.stress_range(cycle.lower), "MPa", formula, ONE, shifted, why)
 
 

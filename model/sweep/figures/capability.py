@@ -185,7 +185,6 @@ def lines(found: Sequence[Capability]) -> Iterator[str]:
     """For people, two lines for each limited result."""
     for one in found:
         row = one.row
-        yield (
-            f"{row['result']}, {row['limits']}: outside {row['outside']}, Cp {row['Cp']}, Cpk {row['Cpk']}; from {one.by}"
-        )
+        shares = f"outside {row['outside']}, Cp {row['Cp']}, Cpk {row['Cpk']}"
+        yield f"{row['result']}, {row['limits']}: {shares}; from {one.by}"
         yield f"  {one.advice}"
