@@ -159,7 +159,6 @@ class DesignFile(Strict):
                 raise ValueError(f"trade_offs.{name}: is an unknown; give an entry that is not")
         return self
 
-
     def refuse_too_few(self, limits: int) -> None:
         """Reject fewer conditions than unknowns; so many `limits` of the case are conditions too.
 

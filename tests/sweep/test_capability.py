@@ -1,6 +1,5 @@
 """Capability: known distributions, controlled estimates against all rods, what to tighten."""
 
-
 import numpy as np
 import pytest
 from scipy import stats
