@@ -199,6 +199,7 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
         text = about(abs(force) if sheet.pulled else force, number_name("force", length), spread)
         levels.append(Level(length, f"L{k} = {number(length)}   F{k} = {text} N"))
     if compressed:
+        levels.append(Level(sheet.smallest, f"Ln = {number(sheet.smallest)}"))
         levels.append(Level(sheet.shortest, f"Lc = {number(sheet.shortest)}"))
     mean = about(s.D, "", given.coil_diameter if given else None)
     widths = [
@@ -208,7 +209,11 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
     ]
     tolerance = sheet.tolerance_of_wire
     wire = number(s.d) if s.wire is None else f"{number(s.wire.width)} × {number(s.d)}"
-    return view(spring, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""))
+    notes = [words("coiled right-hand" if spring.hand > 0 else "coiled left-hand")]
+    if given:
+        notes.append(f"e1 ≤ {number(given.lean, 3)}")
+        notes += [f"e2 ≤ {number(given.parallelism, 3)}"] if s.ends == "closed and ground" else []
+    return view(spring, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""), notes)
 
 
 def _panels(sheet: Sheet, limits: Mapping[str, Limit]) -> Iterator[Panel]:

@@ -27,6 +27,8 @@ GERMAN = {
     "Design": "Ausführung",
     "wire": "Draht",
     "coiling direction": "Windungsrichtung",
+    "coiled right-hand": "rechts gewickelt",
+    "coiled left-hand": "links gewickelt",
     "right": "rechts",
     "left": "links",
     "ends": "Federenden",
