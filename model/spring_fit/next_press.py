@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coilset.model.base.errors import SolveError
-from coilset.model.calibration.fit import SpringFit
-from coilset.model.calibration.intervals import spread
-from coilset.model.calibration.model import Missing, Model
-from coilset.model.calibration.pressing import Pressing
+from coilset.model.spring_fit.fit import SpringFit
+from coilset.model.spring_fit.intervals import spread
+from coilset.model.spring_fit.model import Missing, Model
+from coilset.model.spring_fit.pressing import Pressing
 
 HEIGHTS = 12  # that are tried
 READINGS = 30  # of each branch

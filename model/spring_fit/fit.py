@@ -15,11 +15,11 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.calibration import rods
-from coilset.model.calibration.intervals import Interval, correlation, intervals, minimum
-from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
-from coilset.model.calibration.model import TESTER, Errors, Model, names
-from coilset.model.calibration.pressing import Pressing
+from coilset.model.spring_fit import rods
+from coilset.model.spring_fit.intervals import Interval, correlation, intervals, minimum
+from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
+from coilset.model.spring_fit.model import TESTER, Errors, Model, names
+from coilset.model.spring_fit.pressing import Pressing
 from coilset.model.standards.wires.law import case_law
 from coilset.model.uniform.equivalent import coil
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.stats import t as student
 
-from coilset.model.calibration.model import LOGARITHMIC, Model
+from coilset.model.spring_fit.model import LOGARITHMIC, Model
 
 CONFIDENCE = 0.95
 LINEAR = 0.1  # by which the rise of the sum of squares may differ from that of linear residuals

@@ -6,14 +6,14 @@ import yaml
 from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError
-from coilset.model.calibration import rods
-from coilset.model.calibration.fit import fit_springs
-from coilset.model.calibration.laws import TRIAL, Form
-from coilset.model.calibration.next_press import next_press
-from coilset.model.calibration.pressing import read_pressing
 from coilset.model.material import library, programs
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
+from coilset.model.spring_fit import rods
+from coilset.model.spring_fit.fit import fit_springs
+from coilset.model.spring_fit.laws import TRIAL, Form
+from coilset.model.spring_fit.next_press import next_press
+from coilset.model.spring_fit.pressing import read_pressing
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.springs import spring_fit as study
 from coilset.verification.references import heun

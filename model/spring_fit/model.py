@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.calibration import rods
-from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
-from coilset.model.calibration.pressing import Pressing
-from coilset.model.calibration.rods import Branch
+from coilset.model.spring_fit import rods
+from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
+from coilset.model.spring_fit.pressing import Pressing
+from coilset.model.spring_fit.rods import Branch
 
 TESTER = {"friction": "", "compliance": "mm/N", "offset": "mm"}
 LOGARITHMIC = ("G", "yield_stress", "rise", "rate")
