@@ -27,8 +27,12 @@ ROUNDS = 8
 SETTLED = 0.2  # squared standard deviations by which the last search, or the last whole rods, may have come nearer
 STARTS = {"yield_stress": (0.3, 0.55, 0.8), "rise": (0.15, 0.6), "rate": (60.0, 300.0, 1200.0)}
 SHARE = 0.2  # to begin with: little flows backwards
-SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides, in each round
+SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides, once
 CORRELATED = 0.4  # of residuals that follow each other, from which on they are no scatter
+POSSIBLE = {
+    **dict.fromkeys(("G", "yield_stress", "rise", "rate", "compliance"), (0.0, math.inf)),
+    **dict.fromkeys(("share", "friction"), (0.0, 1.0)),
+}
 UNLIKE = "the law does not follow the readings"
 TESTED = Errors()
 MISFIT = 1.5  # residuals over the tester's errors, from which on the law does not follow the readings
@@ -131,9 +135,7 @@ def fit_springs(
         SolveError: if no constants are found with which the springs can be pressed so.
     """
     known = dict(known or {})
-    for name in (*known, *tester):
-        if name not in (*CONSTANTS, *TESTER):
-            raise InputError(f"'{name}' is none of {', '.join((*CONSTANTS, *TESTER))}", "--known")
+    _check(known, tester)
     law = case_law(pressings[0].case, pressings[0].spring)
     temperature = pressings[0].case.temperature or law.reference_temperature
     shape = Form(form, law.nu, temperature)
@@ -163,6 +165,18 @@ def fit_springs(
     )
 
 
+def _check(known: Mapping[str, float], tester: Sequence[str]) -> None:
+    """Refuse names that are none, and values that nothing can have."""
+    for option, given, possible in (("--known", known, (*CONSTANTS, *TESTER)), ("--tester", tester, TESTER)):
+        for name in given:
+            if name not in possible:
+                raise InputError(f"'{name}' is none of {', '.join(possible)}", option)
+    for name, value in known.items():
+        low, high = POSSIBLE.get(name, (-math.inf, math.inf))
+        if not low <= value <= high or (value == 0.0 and name in ("G", "yield_stress", "rate")):
+            raise InputError(f"{name} must be {f'from 0 to {high:g}' if high == 1.0 else 'positive'}", "--known")
+
+
 def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np.ndarray, OptimizeResult, int]:
     """Whole rods and search in turn, until the constants stay; with the number of rounds.
 
@@ -173,14 +187,15 @@ def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np
     Raises:
         SolveError: if the constants do not come to rest.
     """
-    shares, nearest = list(SHARES), math.inf
+    nearest = math.inf
     for number in range(1, ROUNDS + 1):
-        if model.share is not None and not held:
-            x = minimum(model, x)[0] if number == 1 and len(model.missing) > 1 else x
-            shares.append(float(x[model.share]))
-            model = model.with_shares(x, shares)
-        else:
+        if model.share is None or held:
             model = model.corrected(x, slopes=number == 2)
+        elif len(model.missing) == 1:
+            model = model.with_shares(x, (*SHARES, float(x[model.share])))
+        else:
+            x = minimum(model, x)[0] if number == 1 else x
+            model = model.shifted(x)
         before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x, held)
         small = SETTLED * max(_scatter(model, found), 1.0) ** 2
         if (number > 2 or not held) and before - 2.0 * found.cost < small:
