@@ -20,7 +20,7 @@ from coilset.model.calibration.intervals import Interval, correlation, intervals
 from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
 from coilset.model.calibration.model import TESTER, Errors, Model, names
 from coilset.model.calibration.pressing import Pressing
-from coilset.model.standards.wires.law import case_law
+from coilset.model.standards.wires.law import case_law, hottest
 from coilset.model.uniform.equivalent import coil
 
 ROUNDS = 8
@@ -93,13 +93,25 @@ class SpringFit:
         runs = (rods.steps(one, trial, model.ends(self.x, k)) for k, one in enumerate(model.pressings))
         work = max(step.plastic_work_max_N_per_mm2 for run in runs for step in run)
         files = ", ".join(one.name for one in model.pressings)
+        temperature, case = model.form.temperature, model.pressings[0].case
+        hot = None if isinstance(case.material, str) else hottest(case.material.wire, temperature)
+        more = [f"G at {hot[0]:g} K by the slope of {case.material.wire}"] if hot else []  # type: ignore[union-attr]
         about = {
             "name": name,
             "description": f"Constants identified from presses of springs ({model.form.name})",
             "source": f"coilset material fit --spring: {files}",
-            "validity": {"plastic_work": float(f"{max(work, 1.0):.3g}"), "remark": "; ".join(self.sentences)},
+            "validity": {
+                "plastic_work": float(f"{max(work, 1.0):.3g}"),
+                "remark": "; ".join([*self.sentences, *more]),
+                "temperature": temperature,
+            },
         }
-        return model.form.material(self.values, about)
+        found = model.form.material(self.values, about)
+        if hot:
+            at = found["temperatures"][0]
+            elastic = at["elasticity"] | {"G": hot[1] * at["elasticity"]["G"]}
+            found["temperatures"].append(at | {"temperature": hot[0], "elasticity": elastic})
+        return found
 
     @property
     def misfit(self) -> str:

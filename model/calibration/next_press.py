@@ -108,7 +108,7 @@ def _widths(seen: _Seen, fit: SpringFit) -> np.ndarray:
         r = seen.shares - (seen.shares @ others) @ others.T
         alike = np.sum((r[:, None] - r[None]) ** 2, axis=2) < THRESHOLD * limit
         now = fit.intervals["share"]
-        found[model.share] = np.mean(alike[(SHARES >= now.low) & (SHARES <= now.high)])
+        found[model.share] = np.mean(alike[np.clip(SHARES, now.low, now.high) == SHARES])
     return found
 
 

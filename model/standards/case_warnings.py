@@ -6,6 +6,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
+from coilset.model.case.phases import TimePhase
 from coilset.model.material.law.law import Law
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
@@ -31,6 +32,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
     return (
         *_renamed(case),
         *_estimated(case),
+        *_warm(case, law),
         *_supports(case, spring),
         *_warping(case, spring),
         *own,
@@ -59,6 +61,19 @@ def _estimated(case: Case) -> Iterator[Warning]:
                 f"at {case.temperature:g} K G and E of {name} follow the standard's slope of G, but the strength is "
                 "that of 20 °C: how it decreases is unknown, so that a warm spring sets more than computed",
             )
+
+
+def _warm(case: Case, law: Law) -> Iterator[Warning]:
+    tested = law.validity.temperature
+    reached = [case.temperature, *(phase.temperature for phase in case.loading if isinstance(phase, TimePhase))]
+    other = [one for one in reached if one is not None and one != tested]
+    if tested is not None and other:
+        yield Warning(
+            "temperature",
+            "material",
+            f"yield and hardening of {law.name} were tested at {tested:g} K only and stay so at {max(other):g} K: how "
+            "they decrease is unknown, so that a warm spring sets more than computed",
+        )
 
 
 def _supports(case: Case, spring: Spring) -> Iterator[Warning]:
