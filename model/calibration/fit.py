@@ -23,11 +23,11 @@ from coilset.model.calibration.pressing import Pressing
 from coilset.model.standards.wires.law import case_law, hottest
 from coilset.model.uniform.equivalent import coil
 
-ROUNDS = 8
+ROUNDS = 10
 SETTLED = 0.2  # squared standard deviations by which the last search, or the last whole rods, may have come nearer
 STARTS = {"yield_stress": (0.3, 0.55, 0.8), "rise": (0.15, 0.6), "rate": (60.0, 300.0, 1200.0)}
 SHARE = 0.2  # to begin with: little flows backwards
-SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides, once
+SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides, at first and at the end
 CORRELATED = 0.4  # of residuals that follow each other, from which on they are no scatter
 POSSIBLE = {
     **dict.fromkeys(("G", "yield_stress", "rise", "rate", "compliance"), (0.0, math.inf)),
@@ -192,6 +192,8 @@ def _check(known: Mapping[str, float], tester: Sequence[str]) -> None:
 def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np.ndarray, OptimizeResult, int]:
     """Whole rods and search in turn, until the constants stay; with the number of rounds.
 
+    Whole rods of all shares are run where it begins and ends; in between, one of the present constants shifts them.
+
     Args:
         model, x: unknowns to begin with.
         held: numbers of those that stay: the share until all else is found, then nothing.
@@ -199,22 +201,24 @@ def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np
     Raises:
         SolveError: if the constants do not come to rest.
     """
-    nearest = math.inf
+    nearest, settled = {True: math.inf, False: math.inf}, False
     for number in range(1, ROUNDS + 1):
+        all_shares = settled or len(model.missing) == 1
         if model.share is None or held:
             model = model.corrected(x, slopes=number == 2)
-        elif len(model.missing) == 1:
+        elif all_shares:
             model = model.with_shares(x, (*SHARES, float(x[model.share])))
         else:
             x = minimum(model, x)[0] if number == 1 else x
             model = model.shifted(x)
         before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x, held)
         small = SETTLED * max(_scatter(model, found), 1.0) ** 2
-        if (number > 2 or not held) and before - 2.0 * found.cost < small:
+        settled = (number > 2 or not held) and before - 2.0 * found.cost < small
+        if model.share is not None and not held:  # whole rods come no nearer: below a threshold no share changes them
+            settled |= nearest[all_shares] - before < small
+        if settled and (all_shares or held or model.share is None):
             return model, x, found, number
-        if model.share is not None and not held and nearest - before < small:
-            return model, x, found, number  # whole rods come no nearer: below its threshold the share changes nothing
-        nearest = min(nearest, before)
+        nearest[all_shares] = min(nearest[all_shares], before)
     raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")
 
 

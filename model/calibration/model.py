@@ -229,7 +229,7 @@ class Model:
         return replace(self, missing=tuple(sorted(found, key=lambda one: float(one.at[self.share or 0]))))
 
     def shifted(self, x: np.ndarray) -> "Model":
-        """The model that is the whole rod's at these unknowns; what shares have more than others stays.
+        """The model that is the whole rod's at these unknowns; what shares have more than others stays, for now.
 
         Args:
             x: unknowns.
