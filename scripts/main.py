@@ -278,7 +278,7 @@ def modes(
 ) -> None:
     """Find natural frequencies and modes of the spring of a run, at its end or under another load, and write them."""
     compile_first(stages=("rod",))
-    from coilset.scripts.commands.modes import modes as find
+    from coilset.scripts.commands.vibration import modes as find
 
     find(results, at, count, glued, pictures)
 
@@ -299,8 +299,8 @@ def surge(
 ) -> None:
     """Drive the head of the spring of a run over time, with the mass of its wire, and write forces and energies."""
     compile_first(stages=("rod",))
-    from coilset.scripts.commands.surge import motion as motion_of
-    from coilset.scripts.commands.surge import surge as drive
+    from coilset.scripts.commands.vibration import motion as motion_of
+    from coilset.scripts.commands.vibration import surge as drive
 
     drive(results, at, motion_of(lift, speed, opening, motion), step, seconds, pictures)
 

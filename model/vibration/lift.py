@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline
 
 from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError
@@ -54,7 +54,7 @@ def valve_lift(lift: float, speed: float, opening: float) -> Lift:
 
 
 def read_lift(path: str | Path) -> Lift:
-    """A curve from a CSV file with the columns time_s and travel_mm, both from 0 on; smooth between its rows.
+    """A cubic spline through the rows of a CSV file with the columns time_s and travel_mm, both from 0 on.
 
     Raises:
         InputError: if it cannot be read, or its numbers have no meaning.
@@ -66,6 +66,6 @@ def read_lift(path: str | Path) -> Lift:
     time, travel = table.numbers("time_s"), table.numbers("travel_mm")
     if len(time) < 2 or time[0] != 0.0 or travel[0] != 0.0 or not (np.diff(time) > 0.0).all():
         raise InputError("needs two rows or more, the first of zeros, with times that grow", COLUMNS, path)
-    curve = PchipInterpolator(time, travel)
+    curve = CubicSpline(time, travel)
     last = float(time[-1])
     return Lift(lambda t: float(curve(min(t, last))), last, float(travel.max()), f"the travel of {Path(path).name}")
