@@ -101,7 +101,7 @@ class SpringFit:
             "description": f"Constants identified from presses of springs ({model.form.name})",
             "source": f"coilset material fit --spring: {files}",
             "validity": {
-                "plastic_work": float(f"{max(work, 1.0):.3g}"),
+                "plastic_work": math.ceil(100.0 * max(work, 1.0)) / 100.0,
                 "remark": "; ".join([*self.sentences, *more]),
                 "temperature": temperature,
             },
