@@ -113,8 +113,8 @@ def test_a_program_that_no_longer_advances_ends_soon_with_its_cause(make):
         return replace(outcome, converged=False, reason="no reason") if len(steps) == 3 else outcome
 
     analysis.newton.solve = fails_later
-    tried = f"beyond [0-9.]+ mm .*: {PATIENCE} states were tried and led less than a thousandth of the way; no reason; the "
-    with pytest.raises(SolveError, match=tried + r".* gives? way .*; a height of [0-9.]+ mm can be reached$"):
+    tried = f"{PATIENCE} states were tried and led less than a thousandth of the way; no reason; "
+    with pytest.raises(SolveError, match=tried + r"the .* gives? way .*; a height of [0-9.]+ mm can be reached$"):
         analysis.run()
     assert PATIENCE < sum(spent) + len(spent) <= PATIENCE + 2 * max(solve.evaluations for solve in solves)
     assert len(analysis.result.steps) == 3
