@@ -288,8 +288,8 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
         error = getattr(errors.total, name)
         if error is None:
             message = (
-                f"the error of the {NUMBERS[name]} by mesh, section points, contact and warping could not be estimated; "
-                "compare with a run of more mesh.elements_per_turn"
+                f"the error of the {NUMBERS[name]} by mesh, section points, contact and warping could not be "
+                "estimated; compare with a run of more mesh.elements_per_turn"
             )
             yield Warning("unknown error", "mesh", message, None, asked)
             return
