@@ -65,11 +65,10 @@ def spread(J: np.ndarray) -> np.ndarray:
     return found
 
 
-def rise(model: Model, found: OptimizeResult) -> float:
-    """s² t²: by how much the sum of squares rises to the end of an interval."""
-    freedom = max(model.readings - len(model.fitted), 1)
-    t = float(student.isf(0.5 * (1.0 - CONFIDENCE) / len(model.fitted), freedom))
-    return 2.0 * float(found.cost) / freedom * t**2
+def rise(model: Model) -> float:
+    """t²: by how much the sum of squares, over the variance s², rises to the end of an interval."""
+    t = student.isf(0.5 * (1.0 - CONFIDENCE) / len(model.fitted), max(model.readings - len(model.fitted), 1))
+    return float(t) ** 2
 
 
 def intervals(model: Model, x: np.ndarray, found: OptimizeResult, J: np.ndarray) -> dict[str, Interval]:
@@ -81,7 +80,7 @@ def intervals(model: Model, x: np.ndarray, found: OptimizeResult, J: np.ndarray)
         J: slopes there.
     """
     low, high = model.bounds
-    limit = rise(model, found)
+    limit = 2.0 * float(found.cost) / max(model.readings - len(model.fitted), 1) * rise(model)
     widths = math.sqrt(limit) * spread(J)
     result = {}
     for k, name in enumerate(model.fitted):

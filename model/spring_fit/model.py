@@ -228,6 +228,24 @@ class Model:
                 found.append(Missing(at, self._difference(at, self._whole(at))))
         return replace(self, missing=tuple(sorted(found, key=lambda one: float(one.at[self.share or 0]))))
 
+    def shifted(self, x: np.ndarray) -> "Model":
+        """The model that is the whole rod's at these unknowns; what shares have more than others stays, for now.
+
+        Args:
+            x: unknowns.
+
+        Raises:
+            SolveError: if the whole rod finds no equilibrium.
+        """
+        assert self.share is not None
+        now, missing = self._difference(x, self._whole(x)), []
+        for one in self.missing:
+            at = x.copy()
+            at[self.share] = one.at[self.share]
+            more = tuple(self.lacking(at, k) + here - self.lacking(x, k) for k, here in enumerate(now))
+            missing.append(Missing(at, more))
+        return replace(self, missing=tuple(missing))
+
     def _whole(self, x: np.ndarray) -> list[list[Branch]]:
         material = self.form.material(self.values(x), TRIAL)
         return [rods.whole(one, material, self.ends(x, k)) for k, one in enumerate(self.pressings)]
