@@ -419,6 +419,8 @@ class Case(Strict):
             raise ValueError(
                 f"spring.{self.tails}: seats press on coils, but these are held at their points; give ends: clamped"
             )
+        if self.tails and any(phase.to == "block" for phase in self.targets):
+            raise ValueError(f"spring.{self.tails}: such a spring is not pressed to block; give travel or force")
         arms = getattr(self.spring, "arms", None)
         on_points = [end for end in ("bottom", "top") if getattr(getattr(arms, end, None), "held", "") == "point"]
         if len(on_points) == 2:
