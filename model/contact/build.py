@@ -65,7 +65,7 @@ def build_contacts(
     for end, tail, x in zip(ENDS, spring.tails, stations[[0, -1]], strict=True):
         if tail is not None and tail.on_point:
             along = tail.along(tail.marks[-1:], 1)[0]
-            contacts.append(Support(end, points, stations, bedding, np.array([0.0, 0.0, x[2]] + 3 * [0.0]), along))
+            contacts.append(Support(end, points, stations, bedding, np.tile([0.0, 0.0, x[2], 0.0, 0.0, 0.0], 2), along))
     for name in GUIDES:
         diameter = getattr(contact, name)
         if diameter is not None:

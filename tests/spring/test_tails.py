@@ -206,7 +206,7 @@ def test_a_restart_with_hooks_goes_on_to_the_same_bits(resumed_after):
         ({"hooks": {"top": {"shape": "german"}}, "arms": {"top": {"length": 20.0}}}, "leave one out"),
         ({"arms": {"top": {"length": 20.0, "bend_radius": 5.0}}}, "tangential arm has no bend"),
         ({"arms": both("arms", length=20.0, held="point")["arms"]}, "clamp one of the arms"),
-        ({"arms": {"top": {"length": 9.0, "bends": [{"towards": "up", "length": 9.0}]}}}, "must be outwards"),
+        ({"arms": {"top": {"length": 9.0, "bends": [{"towards": "up", "length": 9.0}]}}}, "must be 'outwards'"),
         ({"arms": {"top": {"length": 9.0, "direction": "axial", "bends": [AWAY]}}}, "runs away already"),
         ({"hooks": {"top": {"shape": "german", "length": 5.0}}}, "too short"),
         ({"hooks": {"top": {"shape": "german", "bend_radius": 1.0}}}, "bent so sharply"),
