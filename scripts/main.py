@@ -278,9 +278,31 @@ def modes(
 ) -> None:
     """Find natural frequencies and modes of the spring of a run, at its end or under another load, and write them."""
     compile_first(stages=("rod",))
-    from coilset.scripts.commands.modes import modes as find
+    from coilset.scripts.commands.vibration import modes as find
 
     find(results, at, count, glued, pictures)
+
+
+@app.command()
+def surge(
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+    at: str = typer.Option(
+        "end", metavar="STATE", help="where it starts: end, or from there height=46, travel=5, force=100, block-3mm"
+    ),
+    lift: float = typer.Option(None, metavar="MM", help="of a valve"),
+    speed: float = typer.Option(None, metavar="1/MIN", help="of the engine, twice that of the camshaft"),
+    opening: float = typer.Option(110.0, metavar="DEGREES", help="turn of the camshaft while the valve is open"),
+    motion: str = typer.Option(None, metavar="FILE", help="CSV with time_s and travel_mm, in place of a valve's lift"),
+    step: float = typer.Option(None, metavar="S", help="of time [default: a 20th of the first axial mode's period]"),
+    seconds: float = typer.Option(None, help="duration [default: the lift and five periods of the first axial mode]"),
+    pictures: bool = typer.Option(True, help="draw the figure"),
+) -> None:
+    """Drive the head of the spring of a run over time, with the mass of its wire, and write forces and energies."""
+    compile_first(stages=("rod",))
+    from coilset.scripts.commands.vibration import motion as motion_of
+    from coilset.scripts.commands.vibration import surge as drive
+
+    drive(results, at, motion_of(lift, speed, opening, motion), step, seconds, pictures)
 
 
 @app.command()
