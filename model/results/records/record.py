@@ -379,13 +379,15 @@ class RunErrors:
 
     Attributes:
         steps: the length of the steps; mesh: that of the elements; section: the points of the sections; contact: the
-            stiffness of seats and coils against penetration.
+            stiffness of seats and coils against penetration; warping: that of sections that are not round, kept
+            elastic.
     """
 
     steps: Errors
     mesh: Errors
     section: Errors
     contact: Errors
+    warping: Errors
 
     @cached_property
     def total(self) -> Errors:
