@@ -20,6 +20,7 @@ MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and
 EQUALS, AT_MOST, AT_LEAST = 0, 1, -1
 SENSES = {EQUALS: "", AT_MOST: "at most ", AT_LEAST: "at least "}
 LIMITS = {"at_most": AT_MOST, "at_least": AT_LEAST}
+SIZE_OF_ZERO = 100.0  # mm, N, MPa or degrees: deviations from a target of 0 are relative to it
 ACTIVE = 1e-6  # relative distance from its limit up to which an inequality decides on the solution
 
 
@@ -71,9 +72,18 @@ class Condition:
         """Of its value."""
         return unit_of(self.short_name) if self.height is None else "N"
 
+    @property
+    def size(self) -> float:
+        """To which deviations are relative: the target's size, or SIZE_OF_ZERO."""
+        return abs(self.target) or SIZE_OF_ZERO
+
     def off(self, value: float) -> float:
-        """Deviation of a value from its target, relative to the target."""
-        return (value - self.target) / abs(self.target)
+        """Deviation of a value from its target, relative to `size`."""
+        return (value - self.target) / self.size
+
+    def deviation(self, off: float) -> str:
+        """A relative deviation in words: per cent of the target, or of 0 in its unit."""
+        return f"{100.0 * abs(off):.2g} %" if self.target else f"{self.size * abs(off):.2g} {self.unit}"
 
     def missed(self, off: float) -> float:
         """The part of a relative deviation by which the condition is not met."""

@@ -27,28 +27,11 @@ def _of_working(name: str) -> str:
     return name
 
 
-def _not_zero(value: float) -> float:
-    """Not 0."""
-    if value == 0.0:
-        raise ValueError("must not be 0: conditions are met relative to their size")
-    return value
-
-
 class Limits(Strict):
     """Limits of a result in place of a value."""
 
-    at_least: Annotated[
-        float | None,
-        Unit("of the result"),
-        AfterValidator(_not_zero),
-        Field(description="minimum"),
-    ] = None
-    at_most: Annotated[
-        float | None,
-        Unit("of the result"),
-        AfterValidator(_not_zero),
-        Field(description="maximum"),
-    ] = None
+    at_least: Annotated[float | None, Unit("of the result"), Field(description="minimum")] = None
+    at_most: Annotated[float | None, Unit("of the result"), Field(description="maximum")] = None
 
     @model_validator(mode="after")
     def _order(self) -> Self:
@@ -69,11 +52,8 @@ Length = Annotated[Annotated[float, Unit("mm"), Positive, Tag("(value)")] | OrLi
 Force = Annotated[Annotated[float, Unit("N"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Rate = Annotated[Annotated[float, Unit("N/mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Work = Annotated[Annotated[float, Unit("N/mm²"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
-Size = Annotated[Annotated[float, AfterValidator(_not_zero), Tag("(value)")] | OrLimits, OR_LIMITS]
-Stress = Annotated[
-    Annotated[float, Unit("MPa"), AfterValidator(_not_zero), Tag("(value)")] | OrLimits,
-    OR_LIMITS,
-]
+Size = Annotated[Annotated[float, Tag("(value)")] | OrLimits, OR_LIMITS]
+Stress = Annotated[Annotated[float, Unit("MPa"), Tag("(value)")] | OrLimits, OR_LIMITS]
 
 
 class ForceAt(Strict):
@@ -122,7 +102,7 @@ class Conditions(Strict):
 
     @model_validator(mode="after")
     def _some(self) -> Self:
-        if not any(value for _, value in self):
+        if all(value in (None, [], {}) for _, value in self):
             raise ValueError("there is no condition; give one, as in free_length_after_mm: 50")
         return self
 

@@ -26,7 +26,6 @@ def build(path):
         (FIND, {}, "such_that: there is no condition"),
         (FIND, {"free_length_after": 25.0}, "is free_length_after_mm meant?"),
         (FIND, {"force_at": {"height": 30.0}}, "such_that.force_at.0.N: this entry is required"),
-        (FIND, {"residual_shear_inside_MPa": 0.0}, "must not be 0"),
         ({**FIND, "spring.turns": [2, 3]}, SUCH, "2 unknowns and 1 condition"),
         ({"spring.pich": [9, 15]}, SUCH, "spring.pich: unknown entry; is pitch meant?"),
         ({"loading.7.to.height": [18, 20]}, SUCH, "find.loading.7.to.height: '7' is not an entry of this list"),
