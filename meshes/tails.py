@@ -11,7 +11,7 @@ Hooks, with the mean radius r of the coil and the diameter d of the wire:
 - **english**: it runs inwards to the axis on two quarters of a circle of radius r/2; there the loop goes up.
 - **side**: the loop continues the coil, rolled about t, so that it stands at the side.
 
-They are pulled at the innermost point of the loop, its top. Arms are held at their end.
+They are pulled at the innermost point of the loop, its top. Arms are held at their end: clamped, or at a point.
 """
 
 from collections.abc import Callable
@@ -26,6 +26,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.schema import Strict
 
 QUARTER = 0.5 * np.pi
+STRAIGHT_ON = 1e-6  # sine of the angle to a direction towards which no wire is bent
 BEND = 1.5  # radius of a bend over the wire's diameter, if none is given
 BEHIND_TOP = {"german": 210.0, "english": 150.0, "side": 150.0}  # degrees of the loop behind the point that is pulled
 
@@ -66,6 +67,22 @@ class Hooks(Strict):
     top: Annotated[Hook | None, Field(description="the top hook; left out: the wire's tip is clamped")] = None
 
 
+class Bend(Strict):
+    """A bend of an arm, and the straight wire behind it."""
+
+    towards: Annotated[
+        Literal["outwards", "inwards", "away", "back"],
+        Field(description="outwards from the axis or inwards, along it away from the coil or back over it"),
+    ]
+    angle: Annotated[
+        float, Unit("degrees"), Field(gt=0, lt=180, strict=True, description="by which the wire turns")
+    ] = 90.0
+    length: Annotated[Millimetres, Field(description="of the straight wire behind the bend")]
+    bend_radius: Annotated[
+        Millimetres | None, Field(description=f"radius of the wire's axis in the bend, {BEND:g} d if not given")
+    ] = None
+
+
 class Arm(Strict):
     """An arm of a torsion spring, from the coil to the point where it is held."""
 
@@ -73,10 +90,18 @@ class Arm(Strict):
         Literal["tangential", "radial", "axial"],
         Field(description="tangential: straight on; radial: bent outwards; axial: bent along the axis"),
     ] = "tangential"
-    length: Annotated[Millimetres, Field(description="of its straight part")]
+    length: Annotated[Millimetres, Field(description="of its straight part, up to the first of the bends")]
     bend_radius: Annotated[
         Millimetres | None, Field(description=f"radius of the wire's axis in the bend, {BEND:g} d if not given")
     ] = None
+    bends: Annotated[
+        list[Bend],
+        Field(default_factory=list, strict=False, max_length=20, description="further bends, from the coil outwards"),
+    ]
+    held: Annotated[
+        Literal["clamped", "point"],
+        Field(description="clamped in the head, or across a point of it, on which it slides and tilts"),
+    ] = "clamped"
 
     @model_validator(mode="after")
     def _belongs(self) -> Self:
@@ -129,11 +154,13 @@ class Tail:
         pieces: from the coil outwards.
         held: number of pieces up to the point that is held or pulled.
         pulled: whether it is a hook.
+        on_point: whether it is an arm that a point of the head holds across.
     """
 
     pieces: tuple[Piece, ...]
     held: int
     pulled: bool
+    on_point: bool = False
 
     @property
     def marks(self) -> np.ndarray:
@@ -182,6 +209,8 @@ class _Wire:
         """Turn towards a direction by an angle, rad; without one until it is the tangent."""
         along = float(towards @ self.tangent)
         across = towards - along * self.tangent
+        if np.linalg.norm(across) < STRAIGHT_ON:
+            raise ValueError
         across /= np.linalg.norm(across)
         angle = float(np.arccos(np.clip(along, -1.0, 1.0))) if angle is None else angle
         self._go(Piece(self.point, self.tangent, across, radius * angle, radius))
@@ -202,18 +231,36 @@ def tail(
     Raises:
         InputError: a bend too sharp for the wire, or a hook shorter than its loop.
     """
-    made, bend = _Wire(point, tangent, up), getattr(entry, "bend_radius", None) or BEND * wire_diameter
-    if bend <= 0.5 * wire_diameter:
-        raise InputError(f"{bend:g} mm: no wire of {wire_diameter:g} mm is bent so sharply", f"{place}.bend_radius")
+    made, bend = _Wire(point, tangent, up), _radius(entry, wire_diameter, place)
     if isinstance(entry, Arm):
         if entry.direction != "tangential":
             made.turn(-made.inwards() if entry.direction == "radial" else up, bend)
         made.straight(entry.length)
-        return Tail(tuple(made.pieces), len(made.pieces), pulled=False)
+        for number, one in enumerate(entry.bends):
+            _bent(made, one, wire_diameter, f"{place}.bends.{number}")
+        return Tail(tuple(made.pieces), len(made.pieces), pulled=False, on_point=entry.held == "point")
     to_top = _HOOKS[entry.shape](made, entry, bend, wire_diameter, place)
     held = len(made.pieces)
     made.turn(_across(made), to_top, np.radians(BEHIND_TOP[entry.shape]))
     return Tail(tuple(made.pieces), held, pulled=True)
+
+
+def _radius(entry: Hook | Arm | Bend, wire_diameter: float, place: str) -> float:
+    """Of a bend of the wire's axis, mm."""
+    bend = getattr(entry, "bend_radius", None) or BEND * wire_diameter
+    if bend <= 0.5 * wire_diameter:
+        raise InputError(f"{bend:g} mm: no wire of {wire_diameter:g} mm is bent so sharply", f"{place}.bend_radius")
+    return float(bend)
+
+
+def _bent(made: _Wire, bend: Bend, wire_diameter: float, place: str) -> None:
+    """A bend of an arm, and the straight wire behind it."""
+    directions = {"outwards": -made.inwards(), "inwards": made.inwards(), "away": made.up, "back": -made.up}
+    try:
+        made.turn(directions[bend.towards], _radius(bend, wire_diameter, place), np.radians(bend.angle))
+    except ValueError:
+        raise InputError(f"the wire runs {bend.towards} already; bend it another way", f"{place}.towards") from None
+    made.straight(bend.length)
 
 
 def _across(made: _Wire) -> np.ndarray:

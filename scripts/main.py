@@ -188,14 +188,18 @@ def mesh(
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     write: list[str] = typer.Option(
-        [], callback=file_targets, metavar="FILE", help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..."
+        [],
+        callback=file_targets,
+        metavar="FILE",
+        help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..., or a solid body: .step",
     ),
+    height: float = typer.Option(None, help="between the seats, mm [default: unloaded]"),
     pictures: bool = typer.Option(True, help="draw the spring"),
 ) -> None:
     """Print the data of a spring, draw it, and write its mesh."""
     from coilset.scripts.commands.mesh import mesh as mesh_case
 
-    mesh_case(case, out, force, settings, write, pictures)
+    mesh_case(case, out, force, settings, write, pictures, height)
 
 
 @app.command()
@@ -210,10 +214,11 @@ def sheet(
     out: list[str] = typer.Option(
         [],
         callback=sheet_targets,
-        help="sheet.html, .pdf, .csv or .dxf, or the folder of the Goodman diagram; may be given several times "
+        help="sheet.html, .pdf, .csv, .dxf or .step, or the folder of the Goodman diagram; may be given several times "
         "[default: results/NAME-OF-CASE]",
     ),
     language: Language = typer.Option("en", help="of the files: en or de"),
+    height: float = typer.Option(None, help="of the spring in the .step file, mm [default: that of the drawing]"),
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite an existing figure"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     wires: bool = typer.Option(False, "--wires", help="list the standard wires, or all numbers of --wire"),
@@ -226,7 +231,19 @@ def sheet(
         sheets.list_wires(wire)
     else:
         sheets.sheet(
-            case, results, wire, length, grade, surface, dynamic, out, language.value, force, settings, pictures
+            case,
+            results,
+            wire,
+            length,
+            grade,
+            surface,
+            dynamic,
+            out,
+            language.value,
+            force,
+            settings,
+            pictures,
+            height,
         )
 
 
@@ -278,9 +295,31 @@ def modes(
 ) -> None:
     """Find natural frequencies and modes of the spring of a run, at its end or under another load, and write them."""
     compile_first(stages=("rod",))
-    from coilset.scripts.commands.modes import modes as find
+    from coilset.scripts.commands.vibration import modes as find
 
     find(results, at, count, glued, pictures)
+
+
+@app.command()
+def surge(
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+    at: str = typer.Option(
+        "end", metavar="STATE", help="where it starts: end, or from there height=46, travel=5, force=100, block-3mm"
+    ),
+    lift: float = typer.Option(None, metavar="MM", help="of a valve"),
+    speed: float = typer.Option(None, metavar="1/MIN", help="of the engine, twice that of the camshaft"),
+    opening: float = typer.Option(110.0, metavar="DEGREES", help="turn of the camshaft while the valve is open"),
+    motion: str = typer.Option(None, metavar="FILE", help="CSV with time_s and travel_mm, in place of a valve's lift"),
+    step: float = typer.Option(None, metavar="S", help="of time [default: a 20th of the first axial mode's period]"),
+    seconds: float = typer.Option(None, help="duration [default: the lift and five periods of the first axial mode]"),
+    pictures: bool = typer.Option(True, help="draw the figure"),
+) -> None:
+    """Drive the head of the spring of a run over time, with the mass of its wire, and write forces and energies."""
+    compile_first(stages=("rod",))
+    from coilset.scripts.commands.vibration import motion as motion_of
+    from coilset.scripts.commands.vibration import surge as drive
+
+    drive(results, at, motion_of(lift, speed, opening, motion), step, seconds, pictures)
 
 
 @app.command()

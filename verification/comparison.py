@@ -7,6 +7,7 @@ measured and computed differ by no more than both errors together.
 """
 
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 import matplotlib as mpl
@@ -20,9 +21,11 @@ from coilset.model.base.columns import Columns, number, read_columns
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.results.diffraction import DIRECTIONS
+from coilset.model.results.records.summary_entries import NUMBERS
 
 DRAWN = 121  # points of a phase's characteristic
 CASE, MEASURED, COLUMNS = "case.yaml", "measured.csv", "quantity, value, error"
+FORCE, STRESSES = "force_N", {f"stress_{name}_MPa": name for name in DIRECTIONS}
 ERRORS = {
     "force_N": "estimated_force_error_N",
     "force_max_N": "estimated_force_error_N",
@@ -118,34 +121,51 @@ def _checked(table: Columns) -> Columns:
     values, errors = table.numbers("value"), table.numbers("error")
     if not len(values) or (errors < 0.0).any():
         raise InputError("give one measured number at least, and its error, 0 or more", "", table.path)
+    known = [FORCE, *STRESSES, *NUMBERS]
+    for line, row in table.rows:
+        quantity = row["quantity"].strip()
+        if quantity not in known:
+            near = get_close_matches(quantity, known, 1, 0.7)
+            right = f"is {near[0]} meant?" if near else f"give a number of summary.json, {', '.join(known[:5])}"
+            raise InputError(f"'{quantity}' is none that a run has; {right}", f"line {line}", table.path)
+        for needed in ["travel_mm"] * (quantity == FORCE) + ["turn"] * (quantity in STRESSES):
+            _given(table, row, line, needed)
     return table
 
 
+def _given(table: Columns, row: dict[str, str], line: int, name: str, otherwise: float = float("nan")) -> float:
+    """A number of a row, or what holds where it is left out.
+
+    Raises:
+        InputError: if it is left out and nothing holds.
+    """
+    value = number(row.get(name))
+    value = otherwise if np.isnan(value) else value
+    if np.isnan(value):
+        raise InputError(f"'{row['quantity']}' needs it as a number", f"line {line}, column {name}", table.path)
+    return value
+
+
 def _compared(table: Columns, row: dict[str, str], line: int, result: Result, folder: Path) -> Compared:
-    quantity, place = row["quantity"].strip(), f"line {line}"
+    name = quantity = row["quantity"].strip()
 
-    def given(name: str, otherwise: float | None = None) -> float:
-        value = number(row.get(name))
-        if np.isnan(value) and otherwise is None:
-            raise InputError(f"'{quantity}' needs it as a number", f"{place}, column {name}", table.path)
-        return value if not np.isnan(value) or otherwise is None else otherwise
+    def given(column: str, *otherwise: float) -> float:
+        return _given(table, row, line, column, *otherwise)
 
-    name = quantity
-    direction = quantity.removeprefix("stress_").removesuffix("_MPa")
-    if quantity == "force_N":
-        phase, travel = given("phase", 1.0), given("travel_mm")
-        computed, name = result.force_at(travel, int(phase) - 1), f"force_N at {travel:g} mm, phase {phase:g}"
-    elif quantity.startswith("stress_") and direction in DIRECTIONS:
+    travel = given("travel_mm") if quantity == FORCE else float("nan")
+    if quantity == FORCE:
+        phase = given("phase", 1.0)
+        computed, name = result.force_at(travel, int(phase) - 1), f"{FORCE} at {travel:g} mm, phase {phase:g}"
+    elif quantity in STRESSES:
         turn, angle = given("turn"), given("angle", 0.0)
         seen = coilset.open(folder).xray(turn, angle, given("spot", 0.0))  # type: ignore[operator]
-        computed, name = float(seen["stress"].sel(direction=direction)), f"{quantity} at turn {turn:g}, {angle:g}°"
+        name = f"{quantity} at turn {turn:g}, {angle:g}°"
+        computed = float(seen["stress"].sel(direction=STRESSES[quantity]))
     else:
         value = result.summary.get(quantity)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            known = "a number of summary.json, force_N, or stress_ with along, around, +45° or -45° and _MPa"
-            raise InputError(f"'{quantity}' is none that this run has; give {known}", f"{place}", table.path)
+        if value is None:
+            raise InputError(f"'{quantity}' is unknown in this run", f"line {line}", table.path)
         computed = float(value)
-    travel = given("travel_mm") if quantity == "force_N" else float("nan")
     return Compared(name, given("value"), given("error"), computed, _error(result, quantity), travel)
 
 

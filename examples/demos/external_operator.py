@@ -21,7 +21,7 @@ from dolfinx import fem, mesh
 from mpi4py import MPI
 
 from coilset.model.material import library
-from coilset.model.material.points import initial_state, update
+from coilset.model.material.point.points import initial_state, update
 from coilset.model.material.programs import Program
 from coilset.model.material.programs import run as run_program
 

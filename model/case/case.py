@@ -120,6 +120,9 @@ class FrictionSpec(Strict):
 
     seats: Annotated[float, Unit("1"), Field(ge=0, lt=2, description="friction coefficient, wire on seats")] = 0.0
     coils: Annotated[float, Unit("1"), Field(ge=0, lt=2, description="friction coefficient, coils on coils")] = 0.0
+    guides: Annotated[
+        float, Unit("1"), Field(ge=0, lt=2, description="friction coefficient, wire on arbor or sleeve")
+    ] = 0.0
 
 
 class ContactSpec(Strict):
@@ -136,11 +139,11 @@ class ContactSpec(Strict):
         Unit("N/mm²"),
         Field(gt=0, description="contact stiffness: force per length and penetration, N/mm per mm; default E/4"),
     ] = None
-    arbor: Annotated[
-        float | None, Unit("mm"), Field(gt=0, description="diameter of a smooth arbor inside the coils, mm")
-    ] = None
+    arbor: Annotated[float | None, Unit("mm"), Field(gt=0, description="diameter of an arbor inside the coils, mm")] = (
+        None
+    )
     sleeve: Annotated[
-        float | None, Unit("mm"), Field(gt=0, description="inner diameter of a smooth sleeve around the coils, mm")
+        float | None, Unit("mm"), Field(gt=0, description="inner diameter of a sleeve around the coils, mm")
     ] = None
     penetration_limit: Annotated[
         float,
@@ -158,6 +161,8 @@ class ContactSpec(Strict):
     def _friction_belongs(self) -> Self:
         if self.coils == "gaps" and self.friction.coils:
             raise ValueError("gap elements have no friction; give coils: closest, or leave friction.coils out")
+        if self.friction.guides and self.arbor is None and self.sleeve is None:
+            raise ValueError("friction.guides is that on an arbor or sleeve; give one of them, or leave it out")
         return self
 
 
@@ -414,6 +419,19 @@ class Case(Strict):
             raise ValueError(
                 f"spring.{self.tails}: seats press on coils, but these are held at their points; give ends: clamped"
             )
+        if self.tails and any(phase.to == "block" for phase in self.targets):
+            raise ValueError(f"spring.{self.tails}: such a spring is not pressed to block; give travel or force")
+        arms = getattr(self.spring, "arms", None)
+        on_points = [end for end in ("bottom", "top") if getattr(getattr(arms, end, None), "held", "") == "point"]
+        if len(on_points) == 2:
+            raise ValueError("spring.arms: on two points the spring turns freely about them; clamp one of the arms")
+        for end in on_points:
+            if getattr(self.heads, end).moves:
+                raise ValueError(f"heads.{end}: the head whose point holds an arm is held; only its turn is driven")
+            for number, phase in enumerate(self.loading):
+                driven = heads_of(phase).get(end)
+                if driven is not None and {*driven.loaded} - {"turn"}:
+                    raise ValueError(f"loading.{number}.to.{end}: a head that holds a point takes a torque only")
         return self
 
     @property

@@ -73,11 +73,27 @@ class DamperSpec(Strict):
 
     point: Annotated[Point, Field(description="a point of it, mm: that about which its moment is reported")]
     direction: Annotated[Point, Field(default_factory=lambda: [0.0, 0.0, 1.0], description="along it, of any length")]
+    guides: Annotated[
+        list[Annotated[float, Unit("mm")]] | None,
+        Field(
+            strict=False,
+            min_length=2,
+            max_length=2,
+            description="where rod guide and piston hold the rod, along the axis from the point, mm; with friction",
+        ),
+    ] = None
+    friction: Annotated[
+        float | None, Unit("1"), Field(gt=0, lt=2, description="friction coefficient of the rod at both guides")
+    ] = None
 
     @model_validator(mode="after")
     def _leads_somewhere(self) -> Self:
         if not any(self.direction):
             raise ValueError("direction is zero; give one such as [0, 0, 1]")
+        if (self.guides is None) != (self.friction is None):
+            raise ValueError("guides and friction belong together, as in {guides: [0, -120], friction: 0.05}")
+        if self.guides is not None and self.guides[0] == self.guides[1]:
+            raise ValueError("guides at one place hold no moment; give two, as in [0, -120]")
         return self
 
 

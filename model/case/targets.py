@@ -1,4 +1,4 @@
-"""Load programs judged before a run: seats only press, no coil comes nearer to the next than their wires allow."""
+"""Load programs judged before a run: seats only press, hooks only pull, no coil comes nearer than its wire allows."""
 
 import numpy as np
 
@@ -23,8 +23,8 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
         shear_modulus: G of its material, MPa.
 
     Raises:
-        InputError: with the numbers: seats that would have to pull, a height below block, or a force far above the one
-            at which all coils are in contact.
+        InputError: with the numbers: seats that would have to pull, hooks that would press, a height below block, or a
+            force far above the one at which all coils are in contact.
     """
     lowest = lowest_height(case, spring)
     greatest = BORNE * closing_force(spring, shear_modulus)
@@ -33,6 +33,8 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
             place = f"loading.{number}.to"
             if case.ends == "seats":
                 _only_press(phase.to, spring.free_length, place)
+            if case.tails == "hooks":
+                _only_pull(phase.to, spring.free_length, place)
             _not_below(phase.to, spring.free_length, lowest, place)
             if phase.to.force is not None and phase.to.force > greatest:
                 raise InputError(
@@ -156,6 +158,14 @@ def _only_press(target: Target, free_length: float, place: str) -> None:
             "pull; give a height up to it, or ends: clamped",
             f"{place}.height",
         )
+
+
+def _only_pull(target: Target, free_length: float, place: str) -> None:
+    for name, pressed in (("force", 0.0), ("travel", 0.0), ("height", -free_length)):
+        value = getattr(target, name)
+        if value is not None and (-value if name == "height" else value) > pressed + SLACK * free_length:
+            bound = f"{free_length:.6g} mm or more" if name == "height" else "0 or less"
+            raise InputError(f"is {value:g}, but hooks are only pulled; give {bound}", f"{place}.{name}")
 
 
 def _not_below(target: Target, free_length: float, lowest: float, place: str) -> None:

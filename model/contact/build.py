@@ -10,9 +10,9 @@ from coilset.model.base.errors import InputError
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS, Contact
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine, WirePoints
-from coilset.model.contact.friction import CoilFriction, SeatFriction
+from coilset.model.contact.friction import CoilFriction, GuideFriction, SeatFriction
 from coilset.model.contact.gap import Gaps
-from coilset.model.contact.hold import Groove, Guide, Mount
+from coilset.model.contact.hold import Groove, Guide, Mount, Support
 from coilset.model.contact.seat import Seat
 
 # Default bedding is E/4: wires that flatten where they touch along a line have E/7.5 to E/4.9 (docs/contact.md).
@@ -61,6 +61,10 @@ def build_contacts(
     if seats is not None:
         for end in ENDS:
             contacts += build_seat(end, seats, spring, points, stations, (bedding, onset), end in moving)
+    for end, tail, x in zip(ENDS, spring.tails, stations[[0, -1]], strict=True):
+        if tail is not None and tail.on_point:
+            along = tail.along(tail.marks[-1:], 1)[0]
+            contacts.append(Support(end, points, stations, bedding, np.tile([0.0, 0.0, x[2], 0.0, 0.0, 0.0], 2), along))
     for name in GUIDES:
         diameter = getattr(contact, name)
         if diameter is not None:
@@ -101,6 +105,8 @@ def frictions(friction: Any, contacts: list[Contact], stations: np.ndarray, seat
     for contact in contacts:
         if isinstance(contact, Seat) and friction.seats:
             found.append(SeatFriction(contact, friction.seats, stations, seats))
+        elif isinstance(contact, Guide) and friction.guides:
+            found.append(GuideFriction(contact, friction.guides, stations, seats))
         elif isinstance(contact, Coils) and friction.coils:
             found.append(CoilFriction(contact, friction.coils, stations, seats))
     return found

@@ -35,6 +35,7 @@ from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory,
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import STENCIL, curve_weights
 from coilset.model.contact.elements import COMPILED, one_sided_at
+from coilset.model.contact.hold import Guide
 from coilset.model.contact.seat import Seat
 from coilset.model.rotations.triples import Triple, axis, back, cross, dot, plus, scaled, times, triple
 from coilset.model.rotations.vectors import chart_derivatives, rotation_derivatives
@@ -47,7 +48,7 @@ PREDICTED = 7  # what is kept of an iterate: t*, μ p, λ
 
 
 class Friction(Contact):
-    """Common parts of both kinds.
+    """Common parts of all kinds.
 
     Args:
         normal: the contact that provides the pressure.
@@ -59,7 +60,7 @@ class Friction(Contact):
     needs_rotations = True
     memory: Memory
 
-    def __init__(self, normal: Seat | Coils, mu: float, stations: np.ndarray, seats: np.ndarray):
+    def __init__(self, normal: Seat | Guide | Coils, mu: float, stations: np.ndarray, seats: np.ndarray):
         self.aside = normal.aside
         self.normal, self.mu, self.end, self.name = normal, mu, normal.end, f"{normal.name} friction"
         n = len(stations)
@@ -130,7 +131,7 @@ class Friction(Contact):
 class SeatFriction(Friction):
     """Wire on a seat, in its plate's frame; unknowns are four stations, the seat, and the stations' rotations."""
 
-    normal: Seat
+    normal: Seat | Guide
     _plate: tuple[np.ndarray, Pair, Pair] | None = None  # rotation vector, rotation and chart of the last evaluation
 
     def _turned(self, θ: np.ndarray) -> tuple[Pair, Pair]:
@@ -142,8 +143,12 @@ class SeatFriction(Friction):
     def touching(self, trial: TrialPositions) -> tuple[np.ndarray, ...]:
         """Numbers of the points that bear."""
         seat, points = self.normal, self.normal.points
-        known = trial.points(points)
-        return (known[seat.gaps(points.at(trial.x, known), trial.seats, known) < seat.multiplier_offset[known]],)
+        known, seats = trial.points(points), self.poses(trial.seats)
+        return (known[seat.gaps(points.at(trial.x, known), seats, known) < seat.multiplier_offset[known]],)
+
+    def poses(self, seats: np.ndarray) -> np.ndarray:
+        """Of both plates, shape (12,), where the seats are at `seats`."""
+        return seats
 
     @cached_property
     def _dofs(self) -> np.ndarray:
@@ -159,12 +164,12 @@ class SeatFriction(Friction):
         """See Friction."""
         (i,), seat, points, plate = at, self.normal, self.normal.points, self.normal.plate
         assert trial.rotations is not None
-        seats0 = self.memory.committed("seats")
+        seats0, seats = self.poses(self.memory.committed("seats")), self.poses(trial.seats)
         start = plate.to_seat_frame(points.at(self.memory.committed("x"), i), seats0)
-        c, θ = np.split(trial.seats[plate.own], 2)
+        c, θ = np.split(seats[plate.own], 2)
         p = points.at(trial.x, i)
-        q = plate.to_seat_frame(p, trial.seats)
-        pressure, hardness = seat.pressures(i, seat.multiplier_offset[i] - seat.gaps(p, trial.seats, i))
+        q = plate.to_seat_frame(p, seats)
+        pressure, hardness = seat.pressures(i, seat.multiplier_offset[i] - seat.gaps(p, seats, i))
         _rub_on_seat(
             np.stack([p - c, points.at(trial.rotations, i), q - start], axis=1),
             np.column_stack([points.radius[i], seat.stiffness[i], self.mu * pressure, self.mu * hardness]),
@@ -175,6 +180,29 @@ class SeatFriction(Friction):
             tractions,
             room,
         )
+
+
+class GuideFriction(SeatFriction):
+    """Wire on an arbor or in a sleeve: as on a seat that stays where it is and takes the forces."""
+
+    normal: Guide
+
+    def poses(self, seats: np.ndarray) -> np.ndarray:
+        """See SeatFriction: at the origin."""
+        return np.zeros_like(seats)
+
+    @cached_property
+    def _dofs(self) -> np.ndarray:
+        """Degrees of freedom of all points, shape (m, 2 NODAL)."""
+        points = self.normal.points
+        return np.hstack([points.dofs(), self.first_rotation + points.dofs()])
+
+    def rub(self, trial: TrialPositions, at: tuple[np.ndarray, ...], tractions: Tractions, room: Pair) -> None:
+        """See Friction."""
+        m, wire = len(at[0]), np.r_[:NODAL, NODAL + SEAT_DOFS : ON_SEAT]
+        whole = np.empty((m, ON_SEAT)), np.empty((m, ON_SEAT, ON_SEAT))
+        super().rub(trial, at, tractions, whole)
+        room[0][:], room[1][:] = whole[0][:, wire], whole[1][:, wire][:, :, wire]
 
 
 class CoilFriction(Friction):

@@ -1,14 +1,17 @@
 """Conditions of a design: the number of a run that each concerns, where it is read, and its deviation."""
 
 import copy
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from coilset.model.base.errors import InputError
+from coilset.model.case.case import Case, check
 from coilset.model.design.file import Conditions, DesignFile, Limits
+from coilset.model.results.limits import case_limits
 from coilset.model.results.records.units import quantity, unit_of
-from coilset.model.results.records.working import place_of
+from coilset.model.results.records.working import is_working_number, place_of
+from coilset.model.standards.wires.law import case_elastic, case_law
 
 GROUP = "such_that."  # before the names of conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
@@ -17,6 +20,7 @@ MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and
 EQUALS, AT_MOST, AT_LEAST = 0, 1, -1
 SENSES = {EQUALS: "", AT_MOST: "at most ", AT_LEAST: "at least "}
 LIMITS = {"at_most": AT_MOST, "at_least": AT_LEAST}
+SIZE_OF_ZERO = 100.0  # mm, N, MPa or degrees: deviations from a target of 0 are relative to it
 ACTIVE = 1e-6  # relative distance from its limit up to which an inequality decides on the solution
 
 
@@ -68,9 +72,18 @@ class Condition:
         """Of its value."""
         return unit_of(self.short_name) if self.height is None else "N"
 
+    @property
+    def size(self) -> float:
+        """To which deviations are relative: the target's size, or SIZE_OF_ZERO."""
+        return abs(self.target) or SIZE_OF_ZERO
+
     def off(self, value: float) -> float:
-        """Deviation of a value from its target, relative to the target."""
-        return (value - self.target) / abs(self.target)
+        """Deviation of a value from its target, relative to `size`."""
+        return (value - self.target) / self.size
+
+    def deviation(self, off: float) -> str:
+        """A relative deviation in words: per cent of the target, or of 0 in its unit."""
+        return f"{100.0 * abs(off):.2g} %" if self.target else f"{self.size * abs(off):.2g} {self.unit}"
 
     def missed(self, off: float) -> float:
         """The part of a relative deviation by which the condition is not met."""
@@ -104,6 +117,7 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
     _visit(data, numbers)
     missing = sorted({at.height for at in spec.such_that.force_at if _phase(program, at.height) is None}, reverse=True)
     released = _is_release(program[-1])
+    found += _of_case(base, data, {one.subject for one in found})
     needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
     if not released and (needing or missing):
         name = needing[0] if needing else f"{GROUP}force_at"
@@ -118,6 +132,28 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
         name = f"{GROUP}force_at" + (f".{number}" if len(spec.such_that.force_at) > 1 else "")
         found += _conditions(name, at.N, at.height, _phase(program, at.height))
     return found, data
+
+
+def _of_case(base: Mapping[str, Any], data: dict[str, Any], given: set[str | float]) -> Iterator[Condition]:
+    """The limits of the case, of results on which the file has no condition of its own; `data` as of `_visit`."""
+    case: Case = check(copy.deepcopy(dict(base)))
+    if not case.limits:
+        return
+    spring = case.spring.build()
+    shear_modulus = case_elastic(case, case_law(case, spring)).shear_modulus
+    for (entry, limit), own in zip(case.limits.items(), case_limits(case, spring, shear_modulus), strict=True):
+        place = f"limits.{entry}"
+        if isinstance(limit, str):
+            raise InputError(f"the middle of {limit} moves with the spring; give its nominal, or two numbers", place)
+        if not is_working_number(own.name) and own.name not in Conditions.model_fields:
+            raise InputError("a design has no condition on it; leave it out", place)
+        if own.low == 0.0 or own.high == 0.0:
+            raise InputError("must not be 0: conditions are met relative to their size", place)
+        working = is_working_number(own.name)
+        name = f"{GROUP}working.{own.name}" if working else f"{GROUP}{own.name}"
+        if name not in given:
+            _visit(data, [own.name] if working else [])
+            yield from _conditions(name, Limits(at_least=own.low, at_most=own.high))
 
 
 def _visit(data: dict[str, Any], names: Iterable[str]) -> None:

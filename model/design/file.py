@@ -9,7 +9,7 @@ from annotated_types import Unit
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.model.base.entry import Strict, check_entries, shortened
-from coilset.model.base.errors import InputError
+from coilset.model.base.errors import InputError, naming
 from coilset.model.base.yaml import read_data
 from coilset.model.case.case import Case, check, read_case_data
 from coilset.model.case.settings import located
@@ -27,28 +27,11 @@ def _of_working(name: str) -> str:
     return name
 
 
-def _not_zero(value: float) -> float:
-    """Not 0."""
-    if value == 0.0:
-        raise ValueError("must not be 0: conditions are met relative to their size")
-    return value
-
-
 class Limits(Strict):
     """Limits of a result in place of a value."""
 
-    at_least: Annotated[
-        float | None,
-        Unit("of the result"),
-        AfterValidator(_not_zero),
-        Field(description="minimum"),
-    ] = None
-    at_most: Annotated[
-        float | None,
-        Unit("of the result"),
-        AfterValidator(_not_zero),
-        Field(description="maximum"),
-    ] = None
+    at_least: Annotated[float | None, Unit("of the result"), Field(description="minimum")] = None
+    at_most: Annotated[float | None, Unit("of the result"), Field(description="maximum")] = None
 
     @model_validator(mode="after")
     def _order(self) -> Self:
@@ -69,11 +52,8 @@ Length = Annotated[Annotated[float, Unit("mm"), Positive, Tag("(value)")] | OrLi
 Force = Annotated[Annotated[float, Unit("N"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Rate = Annotated[Annotated[float, Unit("N/mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Work = Annotated[Annotated[float, Unit("N/mm²"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
-Size = Annotated[Annotated[float, AfterValidator(_not_zero), Tag("(value)")] | OrLimits, OR_LIMITS]
-Stress = Annotated[
-    Annotated[float, Unit("MPa"), AfterValidator(_not_zero), Tag("(value)")] | OrLimits,
-    OR_LIMITS,
-]
+Size = Annotated[Annotated[float, Tag("(value)")] | OrLimits, OR_LIMITS]
+Stress = Annotated[Annotated[float, Unit("MPa"), Tag("(value)")] | OrLimits, OR_LIMITS]
 
 
 class ForceAt(Strict):
@@ -122,7 +102,7 @@ class Conditions(Strict):
 
     @model_validator(mode="after")
     def _some(self) -> Self:
-        if not any(value for _, value in self):
+        if all(value in (None, [], {}) for _, value in self):
             raise ValueError("there is no condition; give one, as in free_length_after_mm: 50")
         return self
 
@@ -138,29 +118,42 @@ class DesignFile(Strict):
             description="the unknowns: entry of the case, or a name with `entries`, → range, factor or choices",
         ),
     ]
-    such_that: Annotated[Conditions, Field(description="the conditions: results that the run is to have")]
+    such_that: Annotated[
+        Conditions,
+        Field(
+            default_factory=Conditions.model_construct,
+            description="the conditions: results that the run is to have, beside the limits of the case",
+        ),
+    ]
     trade_offs: Annotated[
         dict[Name, Annotated[list[Any], Field(min_length=1)]],
         Field(default_factory=dict, description="entry of the case → other values for which the design is estimated"),
     ]
 
     @model_validator(mode="after")
-    def _enough(self) -> Self:
+    def _driven_once(self) -> Self:
         refuse_twice(self.find)
-        conditions = sum(
-            len(value) if isinstance(value, list | dict) else value is not None for _, value in self.such_that
-        )
-        ranges = [name for name, one in self.find.items() if not isinstance(one, Choices)]
-        if conditions < len(ranges):
-            raise ValueError(
-                f"{len(ranges)} unknowns and {conditions} condition(s): give as many conditions as "
-                "unknowns, or more, which are met as well as they can be (least squares)"
-            )
         driven = {entry: name for name, one in self.find.items() for entry in one.driven(name)}
         for name in self.trade_offs:
             if name in driven:
                 raise ValueError(f"trade_offs.{name}: is an unknown; give an entry that is not")
         return self
+
+    def refuse_too_few(self, limits: int) -> None:
+        """Reject fewer conditions than unknowns; so many `limits` of the case are conditions too.
+
+        Raises:
+            InputError: with both numbers.
+        """
+        conditions = limits + sum(
+            len(value) if isinstance(value, list | dict) else value is not None for _, value in self.such_that
+        )
+        ranges = [name for name, one in self.find.items() if not isinstance(one, Choices)]
+        if conditions < len(ranges):
+            raise InputError(
+                f"{len(ranges)} unknowns and {conditions} condition(s): give as many conditions as "
+                "unknowns, or more, which are met as well as they can be (least squares)"
+            )
 
 
 @dataclass(frozen=True)
@@ -203,5 +196,7 @@ def read_design_file(path: str | Path) -> Design:
             )
         base, folder = read_case_data(folder / spec.case), (folder / spec.case).parent
     base = copy.deepcopy({name: located(name, value, folder.absolute()) for name, value in base.items()})
-    check(base, path if spec.case is None else folder / Path(spec.case).name)
+    case: Case = check(base, path if spec.case is None else folder / Path(spec.case).name)
+    with naming(path):
+        spec.refuse_too_few(len(case.limits or ()))
     return Design(spec, base, path)

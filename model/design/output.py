@@ -82,7 +82,7 @@ def report(design: Design, solution: Solution, rows: Sequence[TradeOff], seconds
 
 
 def condition(one: Condition, value: float, off: float) -> dict[str, Any]:
-    """A condition and its deviation; `residual` is relative to the target."""
+    """A condition and its deviation; `residual` is relative to the target, or to SIZE_OF_ZERO."""
     limit = next((name for name, sense in LIMITS.items() if sense == one.sense), "equals")
     return {
         "name": one.name,
@@ -161,7 +161,7 @@ def write(folder: Path, design: Design, solution: Solution, rows: Sequence[Trade
 
 def _slopes(search: Search, found: Found) -> list[list[float]]:
     """Change of each condition's value with each unknown, in their units."""
-    scale = [abs(one.target) for one in search.conditions]
+    scale = [one.size for one in search.conditions]
     return [
         [slope * size / width for slope, width in zip(row, search.width, strict=True)]
         for row, size in zip(found.slopes.tolist(), scale, strict=True)

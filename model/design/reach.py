@@ -125,7 +125,7 @@ def _with_others_met(search: Search, found: Found, worst: int) -> str:
         if np.abs(missed(end.x)).max(initial=0.0) > 1e-3:
             return ""
         one = search.conditions[worst]
-        values.append(one.target + abs(one.target) * float(answer(end.x)[worst]))
+        values.append(one.target + one.size * float(answer(end.x)[worst]))
     return f": with these met it goes from about {min(values):.4g} to {max(values):.4g} {search.conditions[worst].unit}"
 
 

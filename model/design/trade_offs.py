@@ -46,7 +46,7 @@ def trade_offs(search: Search, found: Found, others: Mapping[str, Sequence[Any]]
         for sign in (-1.0, 1.0):
             shift = np.zeros(len(search.conditions))
             shift[number] = sign * CHANGE
-            target = one.target + sign * CHANGE * abs(one.target)
+            target = one.target + sign * CHANGE * one.size
             yield _row(search, found, one.name, target, {}, shift)
     for name, values in others.items():
         for value in values:

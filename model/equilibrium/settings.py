@@ -70,8 +70,8 @@ class StepControl:
 
     Attributes:
         smallest: size below which the path is abandoned.
-        attempts: solves per regular step, plus `spare_attempts` for the phase, after which the program has stalled.
-        spare_attempts: further solves that a phase is allowed, see `attempts`.
+        patience: evaluations after which the program has stalled unless they have brought a thousandth of the phase, or
+            a regular step.
         automatic: number of regular steps in an automatic phase; it starts with one of these.
         easy: number of iterations up to which the next automatic step becomes longer.
         hard: number of iterations from which the next automatic step becomes shorter.
@@ -98,8 +98,7 @@ class StepControl:
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
     smallest: Fraction = 2.0**-10
-    attempts: Count = 40
-    spare_attempts: Annotated[Whole, Field(ge=0, strict=True)] = 200
+    patience: Count = 2000
     automatic: Count = 16
     easy: Count = 5
     hard: Count = 10

@@ -18,7 +18,7 @@ from coilset.model.base.entry import Strict, Whole, check_entries, shortened
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.base.yaml import read_data
 from coilset.model.material.law.law import Law
-from coilset.model.material.points import initial_state, update
+from coilset.model.material.point.points import initial_state, update
 
 STRAINS = {
     "rod": ("eps11", "gamma12", "gamma13"),

@@ -131,11 +131,12 @@ def _targets(design: Mapping[str, Any]) -> str:
 
 def _condition(one: Mapping[str, Any]) -> dict[str, Any]:
     inside = one["met"] and not one["active"]
+    off = _percent(one["residual"]) if one["target"] else f"{plain(abs(one['value']), 2)} {one['unit']}"
     return {
         "words": one["words"],
         "target": _wanted(one, one["target"]),
         "value": f"{plain(one['value'], 7)} {one['unit']}",
-        "off": _percent(one["residual"]) + (" inside the limit" if inside else ""),
+        "off": off + (" inside the limit" if inside else ""),
         "met": "yes, not active" if inside else ("yes" if one["met"] else "no") + (", active" if _sense(one) else ""),
     }
 

@@ -14,6 +14,8 @@ from coilset.model.report.render import write_page
 from coilset.model.report.warning_words import in_words
 from coilset.model.results.files.labelled import labelled
 from coilset.model.sweep.figures import findings
+from coilset.model.sweep.figures.capability import capabilities
+from coilset.model.sweep.figures.limits import histogram
 from coilset.model.sweep.figures.sensitivity import rank_correlation
 
 FILE = "sweep.nc"
@@ -31,13 +33,15 @@ def write_sweep_report(folder: str | Path) -> Path:
         The file.
 
     Raises:
-        InputError: if the data cannot be read. CoilsetError: if the page cannot be written.
+        InputError: if the data cannot be read, or a file that the case names has gone. CoilsetError: if the page
+            cannot be written.
     """
     folder = Path(folder)
     with reading(folder / FILE):
         data = labelled(folder)
         of = next((name for name in ANSWERS if name in data), "seconds")
         columns = _columns(data, of)
+    capable = capabilities(data)
     panels = [panel for panel in (_deciding(data, of), _spread(data, of)) if panel is not None]
     counts = {status: int((data["status"] == status).sum()) for status in ("done", "failed", "missing")}
     names = [data[name].attrs["long_name"] for name in _list(data.attrs["inputs"])]
@@ -47,7 +51,7 @@ def write_sweep_report(folder: str | Path) -> Path:
     return write_page(
         folder,
         "sweep",
-        [("Which input matters most", panels)],
+        [("Limits", [histogram(one) for one in capable]), ("Which input matters most", panels)],
         {"columns": columns, "curves": _curves(data), "files": _files(data)},
         title=f"{folder.resolve().name}: {cases}",
         subtitle=f"{sample or cases}; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')})",
@@ -61,6 +65,8 @@ def write_sweep_report(folder: str | Path) -> Path:
             *(_range(data, name) for name in ANSWERS if name in data),
         ],
         warnings=_warnings(data),
+        capable=[one.row | {"advice": one.advice} for one in capable],
+        by=capable[0].by if capable else "",
         finding=findings.extent(data, of),
         made_with="; ".join(filter(None, (data.attrs["title"], data.attrs.get("versions", "")))),
     )

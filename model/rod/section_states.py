@@ -8,8 +8,8 @@ it. So an evaluation keeps one element's at a time, and a step's end finds them 
 import numpy as np
 
 from coilset.model.body.state import Field, State, Where
+from coilset.model.material.creep.in_time import RateLaw
 from coilset.model.material.creep.law import CreepLaw
-from coilset.model.material.creep.rate import RateLaw
 from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
 from coilset.model.section.kinds import Sections
 

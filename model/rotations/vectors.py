@@ -59,6 +59,12 @@ def rotation_matrix(θ: ArrayLike) -> np.ndarray:
     return R
 
 
+def rotated(v: np.ndarray, θ: np.ndarray) -> np.ndarray:
+    """Vectors turned by rotation vectors, v + c1 θ × v + c2 θ × (θ × v), shapes (m, 3)."""
+    c, across = stumpff(np.sum(θ**2, axis=1, keepdims=True)), np.cross(θ, v)
+    return np.asarray(v + c[1] * across + c[2] * np.cross(θ, across))
+
+
 def nearest_vector(R: np.ndarray, near: np.ndarray) -> np.ndarray:
     """The rotation vector of a matrix that is nearest to another vector, of any number of turns, shape (3,), rad."""
     v = np.empty(3)

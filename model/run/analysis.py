@@ -18,7 +18,7 @@ from coilset.model.contact.base import Contact
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.contact.curve import CentreLine, WirePoints
 from coilset.model.equilibrium.path.program import LoadProgram, ProgramPosition, Stage, StepTaken
-from coilset.model.equilibrium.path.stability import Stability
+from coilset.model.equilibrium.path.stability import Stability, mode_in_words
 from coilset.model.equilibrium.path.step_control import StepSizes
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
@@ -120,7 +120,7 @@ class Analysis:
         self.control = build_control(case, spring, self.system, wire.turns)
         self.stability = Stability(self.newton.iteration)
         self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
-        self.continuation.refusal = self._passed
+        self.continuation.refusal, self.continuation.cause = self._passed, self._gives_way
         self.continuation.steps = steps(case.solver.control.steps)
         self.program = LoadProgram(self.control, self.continuation)
         self.setup = build_setup(case, spring, wire, kinds, coiling_diameter)
@@ -141,6 +141,12 @@ class Analysis:
         if height >= wire:
             return None
         return f"the heads would be {height:.4g} mm apart, less than the wire's {wire:.4g} mm"
+
+    def _gives_way(self) -> str:
+        """Where and how the wire gives way most easily at the last equilibrium, in words; collective."""
+        self.system.restore()
+        mode = self.stability.displacements(self.stability.weakest(self.newton.iteration.load).mode)
+        return "" if not np.isfinite(mode).all() else mode_in_words(mode, self.setup.turns)
 
     def use_method(self, name: str) -> None:
         """Switch to another iteration method.

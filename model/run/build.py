@@ -157,7 +157,13 @@ def build_control(case: Case, spring: Spring, system: System, turns: np.ndarray)
     if clamped:
         stations = [int(np.argmin(np.abs(turns - held))) for held in spring.held]
         pulled = [tail is not None and tail.pulled for tail in spring.tails]
-        holding = holding._replace(stations=(stations[0], stations[1]), at_station=(pulled[0], pulled[1]))
+        points = [tail is not None and tail.on_point for tail in spring.tails]
+        holding = holding._replace(
+            turning=holding.turning or any(points),
+            stations=(stations[0], stations[1]),
+            at_station=(pulled[0], pulled[1]),
+            on_point=(points[0], points[1]),
+        )
     return Heads(system, spring.free_length, holding, float(spring.mean_radius(0.5 * spring.turns)))
 
 
@@ -223,4 +229,5 @@ def build_force_line(case: Case) -> ForceLine | None:
     if spec is None:
         return None
     damper = spec.damper or DamperSpec(point=[0.0, 0.0, 0.0], direction=[0.0, 0.0, 1.0])
-    return ForceLine(spec.lower, spec.upper, tuple(damper.point), tuple(damper.direction))
+    guides = (tuple(damper.guides or ()), damper.friction or 0.0)
+    return ForceLine(spec.lower, spec.upper, tuple(damper.point), tuple(damper.direction), *guides)

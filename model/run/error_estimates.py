@@ -11,6 +11,9 @@ deformation of the first step it is what is left at the release, as in
 `coilset.model.equilibrium.path.step_error`. Wire with a past gets it with the finer rule, too, and the difference of
 its surface's shear counts as well.
 
+**Warping**: `curved` sections of wire that is not round keep the elastic warping as they yield. Sections at one and at
+three quarters of the wire are followed in the same way as ones that warp freely.
+
 **Contact**: bodies that lie in each other by p under pressures q hold the energy U = ½ Σ q p. Rigid ones hold none, and
 by the principle of minimum potential energy their spring's is greater by U to first order: its force is greater by
 dU/ds at the same travel, of which RIGID times as much is stated. The wire is compressed by 2U/F less than the travel
@@ -38,7 +41,8 @@ from coilset.model.results.records.record import Errors, Result, RunErrors, Setu
 from coilset.model.results.records.releases import Release, last_release
 from coilset.model.results.records.stresses import change_of_sign, shear_inside
 from coilset.model.section.kinds import make_sections
-from coilset.model.section.rules import polar
+from coilset.model.section.rules import DiskRule, polar
+from coilset.model.standards.case_warnings import keeps_elastic_warping, warping_can_be_estimated
 
 if TYPE_CHECKING:
     from coilset.model.run.analysis import Analysis
@@ -48,6 +52,8 @@ log = logging.getLogger("coilset.steps")
 FOLLOWED = 8  # elements whose sections are followed with the finer rule
 RINGS, ANGLES = 12, 48  # of the finer rule at least
 FINER_OUTLINE = 3  # times the points, of a section that is no disk
+WARPING = 2  # elements whose sections are followed as ones that warp freely
+WARPING_DEGREE, WARPING_POINTS = 7, 240  # a rectangle 2:1 far beyond yield: 0.4 % of the force too stiff
 STILL = 1e-9  # of the free length: a step of less travel is one of force or time
 # Error by the mesh over the difference to the companion. Forces: 1/3 by the second order, times 1.25 (Roache 1994). In
 # twelve springs with 8, 16 and 64 elements per turn the error at 16 was 0.00 to 0.45 of the difference of the forces,
@@ -67,12 +73,12 @@ def estimated(analysis: "Analysis") -> Result:
         companion = type(analysis)(coarse_case(analysis.case, result.steps), comm, False, estimates=False)
         watch = _Watch(companion)
         companion.run(watch)
-        surface = watch.surface_error()
+        surfaces = watch.surface_errors()
     except CoilsetError as error:
         log.info("mesh, section and contact: errors not estimated, the companion on half of the elements: %s", error)
-        errors = RunErrors(_of_steps(analysis.setup, result), NOT_KNOWN, NOT_KNOWN, NOT_KNOWN)
+        errors = RunErrors(_of_steps(analysis.setup, result), *[NOT_KNOWN] * 4)
         return replace(without_errors(result), errors=errors)
-    judged = _judged(analysis, companion, watch.seen, surface) if comm.rank == 0 else None
+    judged = _judged(analysis, companion, watch.seen, surfaces) if comm.rank == 0 else None
     steps, errors = comm.bcast(judged)
     working = result.working and result.working.with_errors(companion.result.working)
     return replace(result, steps=steps, errors=errors, working=working)
@@ -125,46 +131,49 @@ class _Seen:
 
     Attributes:
         step: Step.
-        section, left: error of the force by the section rule at this height, and at the first step's, N.
+        section, warping: error of the force by the section rule and by elastic warping, N.
         energy: of the contacts' bedding, N mm.
     """
 
     step: Step
     section: float
-    left: float
+    warping: float
     energy: float
 
 
-class _Watch:
-    """Follows the companion's sections with the finer rule and notes the energy of its contacts; collective."""
+class _Followed:
+    """Some of a rod's sections as others, along the same strains.
 
-    def __init__(self, companion: "Analysis") -> None:
-        self.companion, self.rod, self.comm = companion, companion.rod, companion.comm
-        section, rod, rule = companion.case.mesh.section, companion.rod, companion.rod.rule
+    Args:
+        companion: whose rod it is.
+        elements: their number, evenly spread along the wire.
+        kind, rule, degree: of these sections, as in `make_sections`.
+    """
+
+    def __init__(self, companion: "Analysis", elements: int, kind: str, rule: DiskRule, degree: int) -> None:
+        rod = companion.rod
+        self.rod, self.comm, self.inside = rod, companion.comm, companion.setup.inside
         along = rod.line.element[: len(rod.radius)]  # the same elements on any number of ranks
-        self.stride = max(1, math.ceil(rod.mesh.topology.index_map(1).size_global / FOLLOWED))
-        self.cells = np.flatnonzero(along % self.stride == self.stride // 2)
-        finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
-        if rule.outline is not None:
-            finer = rule.outline.rule(FINER_OUTLINE * len(rule))
+        stride = max(1, math.ceil(rod.mesh.topology.index_map(1).size_global / elements))
+        self.cells = np.flatnonzero(along % stride == stride // 2)
         self.sections = make_sections(
-            section.kind,
+            kind,
             rod.law,
             rod.parameters,
-            finer,
+            rule,
             rod.radius[self.cells],
             rod.placement.part(self.cells),
             rod.temperature,
-            section.degree,
+            degree,
         )
         self.start = self.sections.initial_state()
-        _together(self.comm, lambda: give_sections_past(self.sections, finer, self.start, rod, companion.case.spring))
+        _together(self.comm, lambda: give_sections_past(self.sections, rule, self.start, rod, companion.case.spring))
         self.start["strain"] = self._strain()
         self.trial = {name: values.copy() for name, values in self.start.items()}
         self._clock(self.start)
-        self.length = self.stride * rod.l0[self.cells, None, None] * np.array(rod.element.weights)[:, None]
+        self.length = stride * rod.l0[self.cells, None, None] * np.array(rod.element.weights)[:, None]
         self.first: tuple[np.ndarray, float] | None = None
-        self.travel, self.seen, self.lost = 0.0, list[_Seen](), False
+        self.lost = False
 
     def _strain(self) -> np.ndarray:
         return self.rod.state["strain"].equilibrium[self.cells].copy()
@@ -173,23 +182,15 @@ class _Watch:
         if "clock" in self.rod.state:
             state["clock"] = self.rod.state["clock"].equilibrium.copy()
 
-    def __call__(self, step: Step) -> None:
-        error, change = self._follow()
-        travel, self.travel = step.travel_mm - self.travel, step.travel_mm
+    def follow(self, travel: float, still: bool) -> float:
+        """Error of the force after the last step, of so much travel, mm, or `still`; collective, N."""
+        error, change = self._advance()
         if self.first is None and abs(travel) > 0.0:
             self.first = change, travel
         first, unit = self.first or (change, math.inf)
-        left = self._work(error, first) / unit
-        still = abs(travel) < STILL * self.companion.spring.free_length
-        now = left if still else self._work(error, change) / travel
-        layout, energy = self.companion.system.layout, 0.0
-        assert isinstance(layout, LineLayout)
-        for part in self.companion.system.last.contributions:
-            counted = part.bears & layout.begins_here(part.dofs)  # contacts that join two ranks' parts are on both
-            energy += 0.5 * float(part.pressure[counted] @ part.penetration[counted])
-        self.seen.append(_Seen(step, now, left, sum_of_ranks(self.comm, energy)))
+        return self._work(error, first) / unit if still else self._work(error, change) / travel
 
-    def _follow(self) -> tuple[np.ndarray, np.ndarray]:
+    def _advance(self) -> tuple[np.ndarray, np.ndarray]:
         """Error of the section forces after the last step, and its strains, shape (cells, sections, 6)."""
         strain = self._strain()
         self._clock(self.trial)
@@ -209,25 +210,56 @@ class _Watch:
         return math.nan if max_of_ranks(self.comm, float(self.lost)) else work
 
     def surface_error(self) -> float:
-        """Largest difference of shear stress at the inside by the finer rule, MPa; collective."""
-        components, inside = self.sections.components, self.companion.setup.inside
-        own, finer = (
-            inside.shear(state, components)
-            for state in (self.rod.surface_state[self.cells], self.start["surface_state"])
-        )
-        return max_of_ranks(self.comm, float(np.abs(finer - own).max(initial=0.0)))
+        """Largest difference of shear stress at the inside, MPa; collective."""
+        ours = self.inside.shear(self.rod.surface_state[self.cells], self.rod.sections.components)
+        theirs = self.inside.shear(self.start["surface_state"], self.sections.components)
+        return max_of_ranks(self.comm, float(np.abs(theirs - ours).max(initial=0.0)))
+
+
+class _Watch:
+    """Follows the companion's sections and notes the energy of its contacts; collective."""
+
+    def __init__(self, companion: "Analysis") -> None:
+        self.companion, self.comm = companion, companion.comm
+        section, rule = companion.case.mesh.section, companion.rod.rule
+        finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
+        if rule.outline is not None:
+            finer = rule.outline.rule(FINER_OUTLINE * len(rule))
+        self.finer = _Followed(companion, FOLLOWED, section.kind, finer, section.degree)
+        self.warping: _Followed | None = None
+        case, law = companion.case, companion.law
+        if rule.outline and keeps_elastic_warping(case, companion.spring) and warping_can_be_estimated(case, law):
+            finer = rule.outline.rule(max(WARPING_POINTS, len(rule)))
+            self.warping = _Followed(companion, WARPING, "warping", finer, WARPING_DEGREE)
+        self.travel, self.seen = 0.0, list[_Seen]()
+
+    def __call__(self, step: Step) -> None:
+        travel, self.travel = step.travel_mm - self.travel, step.travel_mm
+        still = abs(travel) < STILL * self.companion.spring.free_length
+        section = self.finer.follow(travel, still)
+        warping = self.warping.follow(travel, still) if self.warping else 0.0
+        layout, energy = self.companion.system.layout, 0.0
+        assert isinstance(layout, LineLayout)
+        for part in self.companion.system.last.contributions:
+            counted = part.bears & layout.begins_here(part.dofs)  # contacts that join two ranks' parts are on both
+            energy += 0.5 * float(part.pressure[counted] @ part.penetration[counted])
+        self.seen.append(_Seen(step, section, warping, sum_of_ranks(self.comm, energy)))
+
+    def surface_errors(self) -> tuple[float, float]:
+        """Errors of the shear stress at the inside by the section rule and by elastic warping, MPa; collective."""
+        return self.finer.surface_error(), self.warping.surface_error() if self.warping else 0.0
 
 
 @dataclass(frozen=True)
 class _StepErrors:
-    """Errors of one step by mesh, section rule and contact: of the force, N, and of the height, mm."""
+    """Errors of one step by mesh, section rule, contact and warping: of the force, N, and of the height, mm."""
 
-    forces: tuple[float, float, float]
-    heights: tuple[float, float, float]
+    forces: tuple[float, ...]
+    heights: tuple[float, ...]
 
 
 def _judged(
-    analysis: "Analysis", companion: "Analysis", seen: Sequence[_Seen], surface: float
+    analysis: "Analysis", companion: "Analysis", seen: Sequence[_Seen], surfaces: tuple[float, float]
 ) -> tuple[tuple[Step, ...], RunErrors]:
     """The steps with their total errors, and the errors of the run's numbers; on rank 0."""
     setup, result = analysis.setup, analysis.result
@@ -247,8 +279,8 @@ def _judged(
         steps.append(replace(step, estimated_force_error_N=totals[0], estimated_height_error_mm=totals[1]))
     top = max(range(len(steps)), key=lambda k: abs(steps[k].force_N))
     forces, release = [_known(value) for value in found[top].forces], last_release(setup, result)
-    sets: list[float | None] = [None] * 3
-    shears: list[float | None] = [None] * 3
+    sets: list[float | None] = [None] * 4
+    shears: list[float | None] = [None] * 4
     mine = _of_steps(setup, result)
     theirs = last_release(companion.setup, companion.result)
     if release is not None and theirs is not None:
@@ -258,7 +290,8 @@ def _judged(
         slope, other = _shear_slope(setup, result, release), shear_inside(companion.setup, theirs.snapshot)[0]
         shears = [None if one is None else slope * one for one in sets]
         by_mesh = SHEAR * abs(other - shear_inside(setup, release.snapshot)[0])
-        shears[1] = None if shears[1] is None else shears[1] + surface
+        for k, surface in zip((1, 3), surfaces, strict=True):
+            shears[k] = None if (shear := shears[k]) is None else shear + surface
         by_mesh += change_of_sign(setup, release.snapshot, by_mesh + sum(one or 0.0 for one in shears[1:]))
         shears[0] = by_mesh
     return tuple(steps), RunErrors(mine, *(Errors(*values) for values in zip(forces, sets, shears, strict=True)))
@@ -279,12 +312,11 @@ def _total(steps: float | None, others: Sequence[float]) -> float | None:
 def _step_errors(step: Step, seen: Sequence[_Seen], number: int | None, stiffness: float) -> _StepErrors:
     """The errors of a step, which the companion has taken as its step `number`; not numbers where it has not."""
     if number is None:
-        return _StepErrors((math.nan,) * 3, (math.nan,) * 3)
+        return _StepErrors((math.nan,) * 4, (math.nan,) * 4)
     one = seen[number]
     force = abs(one.step.force_N - step.force_N) + abs(one.step.seat_height_mm - step.seat_height_mm) * stiffness
-    forces = FORCE * force, one.section, _contact_force(seen, number)
-    mesh, section, contact = (value / stiffness if stiffness else math.nan for value in forces)
-    return _StepErrors(forces, (mesh, section, contact))
+    forces = FORCE * force, one.section, _contact_force(seen, number), one.warping
+    return _StepErrors(forces, tuple(value / stiffness if stiffness else math.nan for value in forces))
 
 
 def _contact_force(seen: Sequence[_Seen], number: int) -> float:

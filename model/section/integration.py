@@ -17,7 +17,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import KERNEL
-from coilset.model.material.point_law import rod_points
+from coilset.model.material.point.choice import rod_points
 
 FIBRES = 5  # rows of `fibres`: y, z, u, v and area
 SUMS = KERNEL | {"fastmath": {"contract", "reassoc", "nsz"}, "forceinline": True}

@@ -11,8 +11,8 @@ from typing import Any, Protocol, Self
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
+from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
-from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.rules import DiskRule

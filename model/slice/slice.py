@@ -9,8 +9,8 @@ from dolfinx import fem
 from coilset.meshes.section import SectionMesh
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.errors import InputError
+from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
-from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.slice.forms import RISE, TURN, SliceForms, assemble
 from coilset.model.solid.kinematics import push_forward, stretches
 from coilset.model.solid.points import update_points

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
-from coilset.model.material.law_over_time import LawOverTime
-from coilset.model.material.point_law import solid_point
+from coilset.model.material.point.choice import solid_point
 
 
 @njit(cache=True)

@@ -12,8 +12,8 @@ from petsc4py import PETSc
 from coilset.meshes.solid import SolidMesh
 from coilset.model.body.body import Body, Moment
 from coilset.model.body.state import State, Where
+from coilset.model.material.creep.in_time import RateLaw
 from coilset.model.material.creep.law import CreepLaw
-from coilset.model.material.creep.rate import RateLaw
 from coilset.model.solid.configuration import Configuration
 from coilset.model.solid.forms import SolidForms
 from coilset.model.solid.kinematics import push_forward, stretches

@@ -6,7 +6,9 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
+from coilset.model.case.phases import TimePhase
 from coilset.model.material.law.law import Law
+from coilset.model.material.law.own import OwnLaw
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.sheet import Sheet, pulls, working_lengths
@@ -31,8 +33,9 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
     return (
         *_renamed(case),
         *_estimated(case),
+        *_warm(case, law),
         *_supports(case, spring),
-        *_warping(case, spring),
+        *_warping(case, spring, law),
         *own,
         *_working(case, spring, elastic),
     )
@@ -61,6 +64,19 @@ def _estimated(case: Case) -> Iterator[Warning]:
             )
 
 
+def _warm(case: Case, law: Law) -> Iterator[Warning]:
+    tested = law.validity.temperature
+    reached = [case.temperature, *(phase.temperature for phase in case.loading if isinstance(phase, TimePhase))]
+    other = [one for one in reached if one is not None and one != tested]
+    if tested is not None and other:
+        yield Warning(
+            "temperature",
+            "material",
+            f"yield and hardening of {law.name} were tested at {tested:g} K only and stay so at {max(other):g} K: how "
+            "they decrease is unknown, so that a warm spring sets more than computed",
+        )
+
+
 def _supports(case: Case, spring: Spring) -> Iterator[Warning]:
     """Supports that no spring with these ends has; the ends of a measured wire have no form that could be checked."""
     if spring.measured_axis is not None:
@@ -80,14 +96,25 @@ def _supports(case: Case, spring: Spring) -> Iterator[Warning]:
             yield Warning("support", "seats.hold", message)
 
 
-def _warping(case: Case, spring: Spring) -> Iterator[Warning]:
-    """Sections whose warping changes as they yield; a round tube does not warp. The numbers are of `any-wire`."""
-    if spring.section is not None and not spring.section.hole and case.mesh.section.kind != "warping":
+def keeps_elastic_warping(case: Case, spring: Spring) -> bool:
+    """Whether its sections' warping would change as they yield, but does not; a round tube does not warp."""
+    return spring.section is not None and not spring.section.hole and case.mesh.section.kind != "warping"
+
+
+def warping_can_be_estimated(case: Case, law: Law) -> bool:
+    """Whether sections can be followed as ones that warp freely: with six stresses, in curved wire."""
+    return case.mesh.section.kind == "curved" and not isinstance(law, OwnLaw)
+
+
+def _warping(case: Case, spring: Spring, law: Law) -> Iterator[Warning]:
+    """What no error states. The numbers are of `any-wire`."""
+    stated = case.steps_error is not None and warping_can_be_estimated(case, law)
+    if keeps_elastic_warping(case, spring) and not stated:
         yield Warning(
             "elastic warping",
             "mesh.section.kind",
-            f"{case.mesh.section.kind} sections keep the warping of the elastic wire as it yields, and the stated "
-            "error does not contain that: far beyond yield the force was up to 0.5 % too high in ovals and eggs and "
+            f"{case.mesh.section.kind} sections keep the warping of the elastic wire as it yields, and no stated "
+            "error contains that: far beyond yield the force was up to 0.5 % too high in ovals and eggs and "
             "2.4 % in a rectangle 2:1; give kind: warping with degree: 5 or, for corners, 9",
         )
 

@@ -1,14 +1,13 @@
 """Quantities of the formulas as found in a results folder."""
 
-import csv
 import json
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError
 
 if TYPE_CHECKING:
@@ -81,25 +80,22 @@ def read(folder: str | Path) -> Found:
     folder = Path(folder)
     if not (folder / "summary.json").is_file():
         raise InputError("holds no results of a run: there is no summary.json", "", folder)
-    summary = _read(folder / "summary.json", lambda file: json.load(file))
-    rows = _read(folder / "history.csv", lambda file: list(csv.DictReader(file)))
     try:
-        heights = [summary["free_length_before_mm"], *(float(row["seat_height_mm"]) for row in rows)]
-        forces = [0.0, *(float(row["force_N"]) for row in rows)]
-    except (KeyError, TypeError, ValueError) as error:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(
+            f"cannot be read ({getattr(error, 'strerror', None) or error})", "", folder / "summary.json"
+        ) from None
+    history = read_columns(folder / "history.csv")
+    try:
+        before = summary["free_length_before_mm"]
+    except (KeyError, TypeError) as error:
         raise InputError(f"is not a result of coilset solve ({error})", "", folder) from None
-    return Found(summary, np.array(heights), np.array(forces), *_points(folder / "points.nc"))
-
-
-Parsed = TypeVar("Parsed")
-
-
-def _read(path: Path, parse: Callable[[TextIO], Parsed]) -> Parsed:
-    try:
-        with open(path, encoding="utf-8", newline="") as file:
-            return parse(file)
-    except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
-        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "", path) from None
+    missing = next((name for name in ("seat_height_mm", "force_N") if name not in history.names), None)
+    if missing:
+        raise InputError(f"is not a result of coilset solve ({missing!r})", "", folder)
+    heights, forces = history.numbers("seat_height_mm"), history.numbers("force_N")
+    return Found(summary, np.append(before, heights), np.append(0.0, forces), *_points(folder / "points.nc"))
 
 
 def _points(path: Path) -> tuple[float | None, float | None, float | None]:

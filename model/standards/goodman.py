@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import log10
 
-from coilset.model.standards.wires.file import Endurance
+from coilset.model.standards.wires.file import TESTED, Endurance, Springs
 
 SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -17,6 +17,12 @@ class Line:
     limit: float
     cycles: float
     surface: str
+    springs: Springs = "not stated"
+
+    @property
+    def tested(self) -> str:
+        """Whether the springs of the tests had been preset, in words."""
+        return TESTED[self.springs]
 
     @property
     def times(self) -> str:
@@ -51,4 +57,5 @@ def line(endurance: Endurance, diameter: float) -> Line:
     def at(pair: tuple[float, float]) -> float:
         return pair[0] - pair[1] * log10(diameter)
 
-    return Line(at(endurance.at_zero), at(endurance.knee), at(endurance.limit), endurance.cycles, endurance.surface)
+    points = at(endurance.at_zero), at(endurance.knee), at(endurance.limit)
+    return Line(*points, endurance.cycles, endurance.surface, endurance.springs)

@@ -235,11 +235,11 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
 
 def _working(sheet: Sheet) -> Iterator[Row]:
     s, k = sheet.spring, sheet.spring.correction
-    gaps, hot = en13906.gap_sum(s.d, s.D, s.n, sheet.dynamic), en13906.is_hot_coiled(s.d)
+    hot = en13906.is_hot_coiled(s.d)
     formula = "0.02 n (D + d), hot coiled" if hot else f"{'1.5 ' * sheet.dynamic}n (0.0015 D²/d + 0.1 d)"
-    yield Row("minimum sum of gaps Sa", gaps, "mm", formula, ONE if hot else TWO)
+    yield Row("minimum sum of gaps Sa", sheet.gaps, "mm", formula, ONE if hot else TWO)
     formula = "Lc + Sa" if sheet.block is not None else f"{s.solid:.4g} mm + Sa"
-    yield Row("smallest length Ln", sheet.shortest + gaps, "mm", formula, ONE if hot else TWO)
+    yield Row("smallest length Ln", sheet.smallest, "mm", formula, ONE if hot else TWO)
     for length in sorted(sheet.lengths, reverse=True):
         τ, force = sheet.stress(length), sheet.found.force_at(length) if sheet.found else None
         real = None if force is None else en13906.stress(force, s.of_stress, s.D)
@@ -312,12 +312,13 @@ def _endurance(sheet: Sheet) -> Iterator[Row]:
         return
     residual = sheet.found.residual if sheet.found else None
     shifted = None if residual is None else endured.stress_range(cycle.shifted(residual).lower)
-    why = (
-        ""
-        if residual is None
-        else (f"with the residual {residual:.1f} MPa; the lines hold for set springs, so it may count twice")
-    )
-    formula = f"Goodman, {endured.times} times, {endured.surface}"
+    counted = {
+        "preset": "the line is of preset springs, so it may count twice",
+        "not preset": "the line is of springs that were not preset, so it counts once",
+        "not stated": "whether the line is of preset springs is not stated, so it may count twice",
+    }
+    why = "" if residual is None else f"with the residual {residual:.1f} MPa; {counted[endured.springs]}"
+    formula = f"Goodman, {endured.times} times, {endured.surface}, {endured.tested}"
     yield Row("permissible stress range", endured.stress_range(cycle.lower), "MPa", formula, ONE, shifted, why)
 
 

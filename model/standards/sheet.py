@@ -99,6 +99,17 @@ class Sheet:
         return self.spring.solid if self.block is None else self.block
 
     @property
+    def gaps(self) -> float:
+        """Minimum sum of the gaps Sa, mm."""
+        s = self.spring
+        return en13906.gap_sum(s.d, s.D, s.n, self.dynamic)
+
+    @property
+    def smallest(self) -> float:
+        """Smallest working length Ln = Lc + Sa, mm."""
+        return self.shortest + self.gaps
+
+    @property
     def tolerance_of_wire(self) -> float:
         """Tolerance of d included in d_max, mm; 0 if unknown."""
         return (self.wire.diameter_tolerance(self.spring.d) if self.wire else None) or 0.0

@@ -76,6 +76,7 @@ def collect(plan: Plan, folder: str | Path, most: int = MOST_CASES) -> xr.Datase
         "title": f"sweep {plan.path.stem}",
         "versions": versions(),
         "design": plan.spec.design,
+        "model": plan.spec.model,
         "inputs": plan.names,
         "cases": len(plan),
     }

@@ -109,7 +109,7 @@ def _conclude(console: Console, solution: Solution, rows: list[TradeOff], folder
         console.print(f"[bold]{words.words} = {value:.7g} {words.unit}".rstrip() + f"[/]{entry}", highlight=False)
     for one, value, off in zip(search.conditions, found.best.values, found.off, strict=True):
         if not found.met or one.sense:
-            missed = f", missed by {100.0 * abs(one.missed(off)):.2g} %" if abs(one.missed(off)) > TOLERANCE else ""
+            missed = f", missed by {one.deviation(one.missed(off))}" if abs(one.missed(off)) > TOLERANCE else ""
             active = "" if not one.sense or missed else ", active" if one.is_active(off) else ", not active"
             console.print(f"{one.words} {value:.6g} {one.unit} for {one.wanted}{missed}{active}")
     if not found.met:

@@ -26,6 +26,7 @@ def mesh(
     settings: Sequence[str] = (),
     write: Sequence[str] = (),
     pictures: bool = True,
+    height: float | None = None,
 ) -> None:
     """Print the data of a spring, draw it, and write its mesh; see `coilset mesh --help`.
 
@@ -36,6 +37,7 @@ def mesh(
         settings: texts `key=value` that replace entries of the case file.
         write: mesh files to write; the suffix determines the format.
         pictures: draw the spring.
+        height: between the seats, mm; None of the unloaded spring.
 
     Raises:
         InputError: wrong input, or files that exist already.
@@ -48,12 +50,14 @@ def mesh(
         from coilset.meshes.export import check_format, write_mesh
 
         for path in write:
-            check_format(path)
+            if not _is_body(path):
+                check_format(path)
     folder = results_folder(out, Path(case_file).stem)
     with naming(case_file):
         spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         elastic = case_elastic(case, case_law(case, spring))
+        spring = spring if height is None else spring.at_height(height)
     refuse_to_replace([folder / name for name in DRAWN if pictures] + [Path(path) for path in write], force)
     console.print(_table(spring_data(spring, elastic), turns))
     for warning in spring_warnings(spring, elastic):
@@ -62,14 +66,23 @@ def mesh(
         make(Path(path).parent)
         try:
             with whole(path) as partial:
-                write_mesh(spring, turns, partial)
+                if _is_body(path):
+                    from coilset.meshes.step import step
+
+                    partial.write_bytes(step(spring)[0])
+                else:
+                    write_mesh(spring, turns, partial)
         except InputError as error:
             raise InputError(error.problem, error.place, path) from None
-        console.say(f"mesh in {path}")
+        console.say(f"{'solid body' if _is_body(path) else 'mesh'} in {path}")
     if pictures:
         make(folder)
         _draw(spring, folder, Path(case_file).stem, console)
         console.say(f"pictures in {folder}{os.sep}")
+
+
+def _is_body(path: str | Path) -> bool:
+    return Path(path).suffix.lower() == ".step"
 
 
 def _table(data: SpringData, turns: np.ndarray) -> Table:

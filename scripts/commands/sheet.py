@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
@@ -47,6 +48,7 @@ def sheet(
     force: bool = False,
     settings: Sequence[str] = (),
     pictures: bool = True,
+    height: float | None = None,
 ) -> None:
     """Print the sheet of a spring, write it to files, or draw its Goodman diagram; see `coilset sheet --help`.
 
@@ -93,6 +95,8 @@ def sheet(
 
         name = Path(results).resolve().name if results else ""
         content = document(case, spring, made, name, warnings, Words(language))
+        if height is not None:
+            content = replace(content, body=spring.at_height(height))
         for file in files:
             write(content, file)
             console.say(f"sheet in {file}")

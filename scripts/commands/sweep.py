@@ -202,7 +202,7 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     files, problems = draw(out, plan, data) if options.pictures else ([], [])
     for line in multifidelity.lines(plan, data, out / "sweep.parquet"):
         console.print(line)
-    capable = capability.capabilities(plan, data)
+    capable = capability.capabilities(data)
     for line in capability.lines(capable):
         console.print(line)
     if capable and options.pictures:

@@ -8,7 +8,7 @@ from coilset.model.base.errors import InputError
 
 OVERWRITE = ("--overwrite", "--force")
 """Names of the option that replaces existing results; the second is its earlier name."""
-SHEETS = (".html", ".pdf", ".csv", ".dxf")
+SHEETS = (".html", ".pdf", ".csv", ".dxf", ".step")
 """Suffixes of the files of a data sheet."""
 UNFIT = re.compile(r"[/\0]|^\.+$")  # in the name of a folder
 

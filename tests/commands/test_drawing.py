@@ -9,8 +9,11 @@ import threading
 import time
 
 import pytest
+from matplotlib.image import imread
 
 from coilset.model.base.errors import CoilsetError
+from coilset.model.figures.display import ensure
+from coilset.model.runtime.processes import mpi_environment, mpirun
 from coilset.scripts.startup import announce_begin
 from coilset.scripts.terminal import drawing
 from coilset.scripts.terminal.drawing import Drawings
@@ -146,3 +149,20 @@ def test_pictures_of_a_run_are_drawn_by_the_command(example, tmp_path):
     assert "springs.png" in pictures or "springs.png is not drawn" in said
     assert not list(out.glob(".*partial*"))
     assert json.loads((out / "summary.json").read_text())["steps"] == 1
+
+
+def test_two_ranks_draw_the_spring_and_its_force_line(example, tmp_path):
+    """Also the case with most pictures ends without a fault of the libraries that ranks and drawing both load."""
+    if not ensure():
+        pytest.skip("no display and no Xvfb")
+    case = example.parent / "springs" / "side_load.yaml"
+    coarse = "loading.0.steps=1", "mesh.elements_per_turn=8", "mesh.section={radial: 2, angular: 6}", "accuracy=none"
+    settings = [word for entry in coarse for word in ("--set", entry)]
+    command = [*mpirun(2), sys.executable, "-m", "coilset.scripts", "solve", str(case), "--out", "out", *settings]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=mpi_environment(), capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    for name in ("springs.png", "force_line.png"):
+        picture = imread(tmp_path / "out" / name)
+        assert picture[..., :3].std() > 0.02

@@ -26,7 +26,6 @@ def build(path):
         (FIND, {}, "such_that: there is no condition"),
         (FIND, {"free_length_after": 25.0}, "is free_length_after_mm meant?"),
         (FIND, {"force_at": {"height": 30.0}}, "such_that.force_at.0.N: this entry is required"),
-        (FIND, {"residual_shear_inside_MPa": 0.0}, "must not be 0"),
         ({**FIND, "spring.turns": [2, 3]}, SUCH, "2 unknowns and 1 condition"),
         ({"spring.pich": [9, 15]}, SUCH, "spring.pich: unknown entry; is pitch meant?"),
         ({"loading.7.to.height": [18, 20]}, SUCH, "find.loading.7.to.height: '7' is not an entry of this list"),
@@ -92,4 +91,45 @@ def test_a_force_is_read_where_the_program_goes_to_its_height(design_file):
 def test_a_length_after_needs_a_release(design_file):
     read = read_design_file(design_file(FIND, SUCH, loading=[{"to": "block"}]))
     with pytest.raises(InputError, match="let the load program end with"):
+        conditions(read.spec, read.base)
+
+
+def test_the_limits_of_the_case_are_conditions(design_file):
+    """On both sides, at a working length that is visited for them; a condition of the file replaces one."""
+    limits = {"free_length": [24.0, 26.0], "force_at_22": {"nominal": 150.0, "tolerance": 5.0}, "set": [2.0, 9.0]}
+    entries = {"limits": limits, "working": {"lengths": [22.0]}}
+    path = design_file({**FIND, "spring.turns": [2, 3]}, {"set_mm": {"at_most": 8.0}}, **entries)
+    read = read_design_file(path)
+    found, data = conditions(read.spec, read.base)
+    assert {one.name: one.target for one in found} == {
+        "such_that.set_mm.at_most": 8.0,
+        "such_that.free_length_after_mm.at_most": 26.0,
+        "such_that.free_length_after_mm.at_least": 24.0,
+        "such_that.working.force_at_22_N.at_most": 155.0,
+        "such_that.working.force_at_22_N.at_least": 145.0,
+    }
+    assert data["working"]["lengths"] == [22.0]
+
+
+def test_limits_alone_are_enough(design_file):
+    path = design_file(FIND, SUCH, limits={"free_length": [24.0, 26.0]})
+    data = yaml.safe_load(path.read_text(encoding="utf-8"))
+    del data["such_that"]
+    path.write_text(yaml.safe_dump(data), encoding="utf-8")
+    found = make_search(read_design_file(path)).run()
+    assert found.met
+    assert 24.0 * 0.999 < found.best.values[0] < 26.0 * 1.001
+
+
+@pytest.mark.parametrize(
+    ("limits", "problem"),
+    [
+        ({"free_length": "EN 15800 grade 2"}, "limits.free_length: the middle of EN 15800 grade 2 moves"),
+        ({"rate": [10.0, 12.0]}, "limits.rate: a design has no condition on it"),
+        ({"set": [0.0, 12.0]}, "limits.set: must not be 0"),
+    ],
+)
+def test_limits_that_are_no_conditions(design_file, limits, problem):
+    read = read_design_file(design_file(FIND, SUCH, limits=limits))
+    with pytest.raises(InputError, match=problem):
         conditions(read.spec, read.base)

@@ -14,6 +14,7 @@ from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 
 CLOSE = 1e-6  # of the target
+SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 4.5, "pitch": 12.0}
 
 
 def solved(tmp_path, search, found):
@@ -49,6 +50,27 @@ def test_a_condition_that_the_uniform_rod_does_not_know(search, tmp_path):
     one = search({"loading.0.to.height": [18, 30]}, {"residual_shear_inside_MPa": -50.0})
     summary, _ = solved(tmp_path, one, find(one))
     assert summary["residual_shear_inside_MPa"] == pytest.approx(-50.0, rel=CLOSE)
+
+
+def test_a_target_of_zero_is_met_absolutely(search):
+    """The force line of an elastic spring comes to the axis, to 1e-5 mm; the slopes are in mm per mm."""
+    entries = {
+        "spring": SPRING,
+        "material": "elastic",
+        "ends": "clamped",
+        "accuracy": "none",
+        "loading": [{"to": {"travel": 5.0, "top": {"sideways": [1.0, 0.0]}}, "steps": 1}],
+        "working": {"lengths": [54.0]},
+        "force_line": {"upper": 59.0},
+    }
+    one = search({"loading.0.to.top.sideways.0": [-9.0, 9.0]}, {"working": {"line_upper_x_at_54_mm": 0.0}}, **entries)
+    found = find(one)
+    assert found.met
+    (value,) = found.best.values
+    assert abs(value) <= 1e-5
+    (condition,) = one.conditions
+    assert condition.off(0.5) == pytest.approx(0.005)
+    assert condition.deviation(0.005) == "0.5 mm"
 
 
 def test_more_conditions_than_unknowns_are_met_as_well_as_they_can_be(search):

@@ -159,7 +159,6 @@ def test_of_many_combinations_those_next_to_the_solution_are_evaluated(search):
             "find.spring.pitch: spring.pitch is driven by p already",
         ),
         (HEIGHT, {"set_mm": {}}, "such_that.set_mm: is empty; give at_least or at_most"),
-        (HEIGHT, {"set_mm": {"at_most": 0}}, "such_that.set_mm.at_most: must not be 0"),
         (HEIGHT, {"set_mm": {"at_least": 5, "at_most": 4}}, "such_that.set_mm: at_least 5 leaves nothing below"),
         (HEIGHT, {"set_mm": {"most": 4}}, "such_that.set_mm.most: unknown entry; is at_most meant?"),
         (HEIGHT, {"set_mm": "4"}, "such_that.set_mm: '4': must be a number"),

@@ -80,6 +80,27 @@ def test_the_spring_of_my_own_steel(folder):
     compare("own-steel", solved(read_case(folder / "first.yaml", [steel, "spring.pitch=14"])))
 
 
+def test_one_press_to_a_reliable_set():
+    """Constants of the page are those of the shipped wire; its set at a third height, and the measured one beside."""
+    page, examples = PAGES["one-press"], Path(__file__).resolve().parents[2] / "examples"
+    third = examples / "compare/third_height"
+    tables = re.findall(r"constant +value.*?tester's errors", page, re.DOTALL)
+    stated = dict(re.findall(r"^ +(\w+) +([\d.]+) ", tables[1], re.MULTILINE))
+    assert yaml.safe_load((third / "my_wire.yaml").read_text())["temperatures"][0]["elasticity"]["G"] == pytest.approx(
+        float(stated["G"]), rel=1e-5
+    )
+    first, second = map(float, re.findall(r"^ +set +([\d.]+) ±", page, re.MULTILINE))
+    measured = float(re.findall(r"set_mm,([\d.]+)", (third / "measured.csv").read_text())[0])
+    assert f"set_mm,{measured}," in page
+    assert f"sets by {measured} mm" in page
+    assert f"prediction was {100 * (1 - first / measured):.0f} % short" in page
+    assert f"off by {100 * (1 - second / measured):.1f} %" in page
+    settings = [f"material={third / 'my_wire.yaml'}", "loading.0.to={height: 17}", "accuracy=none"]
+    settings += ["loading.0.steps=24", "loading.1.steps=8"]
+    case = read_case(examples / "material/springs/spring.yaml", settings)
+    assert solved(case)["set_mm"] == pytest.approx(second, rel=3e-3)
+
+
 def test_the_study_of_many_springs(folder):
     """Its two cases at a pitch of 13 mm: what the wire's tolerance does."""
     plan = Plan(folder / "study.yaml")

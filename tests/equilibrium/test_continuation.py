@@ -2,6 +2,7 @@
 
 import logging
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,6 +96,36 @@ def test_an_impossible_target_is_given_up_with_all_that_was_reached(make, ends, 
     assert not result.complete
     assert result.snapshots[-1].height == result.steps[-1].seat_height_mm > 5.0
     assert analysis.system.max_penetration <= 5e-4
+
+
+PATIENCE = 100
+IMPATIENT = f"solver.control.steps.patience={PATIENCE}"
+
+
+def test_a_program_that_no_longer_advances_ends_soon_with_its_cause(make):
+    """Within `patience` evaluations and one solve; what was reached is kept, and how the spring gives way is named."""
+    analysis = make("[{to: {travel: 15}}]", IMPATIENT, "solver.control.steps.smallest=1e-9")
+    solves, solve, spent = listened(analysis), analysis.newton.solve, []
+
+    def fails_later(load, start=None):
+        outcome, steps = solve(load, start), analysis.result.steps
+        spent.append(outcome.evaluations if len(steps) == 3 else 0)
+        return replace(outcome, converged=False, reason="no reason") if len(steps) == 3 else outcome
+
+    analysis.newton.solve = fails_later
+    tried = f"{PATIENCE} states were tried and led less than a thousandth of the way; no reason; "
+    with pytest.raises(SolveError, match=tried + r"the .* gives? way .*; a height of [0-9.]+ mm can be reached$"):
+        analysis.run()
+    assert PATIENCE < sum(spent) + len(spent) <= PATIENCE + 2 * max(solve.evaluations for solve in solves)
+    assert len(analysis.result.steps) == 3
+    assert analysis.result.snapshots[-1].height == analysis.result.steps[-1].seat_height_mm
+
+
+def test_a_program_that_advances_slowly_goes_on(make):
+    """Each regular step is an advance, however many evaluations all of them take."""
+    analysis = make("[{to: block, steps: 20}]", IMPATIENT)
+    assert analysis.run().complete
+    assert analysis.system.evaluations > PATIENCE
 
 
 def test_coils_that_sink_in_too_far_are_pressed_apart(make):

@@ -17,7 +17,7 @@ from coilset.model.run.analysis import Analysis
 WIRE, MEAN, TURNS, PITCH = 5.0, 40.0, 12.0, 9.0
 LENGTH = TURNS * PITCH
 SPRING = {"wire_diameter": WIRE, "mean_diameter": MEAN, "turns": TURNS, "pitch": PITCH}
-DAMPER = {"point": [4.0, 0.0, 10.0], "direction": [0.1, 0.0, 1.0]}
+DAMPER = {"point": [4.0, 0.0, 10.0], "direction": [0.1, 0.0, 1.0], "guides": [-20.0, 60.0], "friction": 0.05}
 NAMES = tuple(f"line_{plane}_{axis}_mm" for plane in ("lower", "upper") for axis in "xy")
 BOW = {"turns": [0, TURNS / 2, TURNS], "values": [0.0, 3.0, 0.0]}  # a parabola: its mean is 2 mm
 
@@ -54,6 +54,16 @@ def test_a_column_that_is_free_at_its_top_has_none():
     turns = float(moment @ axis)
     assert seats.damper_torque_Nmm == pytest.approx(turns, abs=0.1)
     assert seats.damper_moment_Nmm == pytest.approx(np.linalg.norm(moment - turns * axis), rel=1e-3)
+    places = [np.array(DAMPER["point"]) + along * axis for along in DAMPER["guides"]]
+    u, v = np.cross(axis, [0.0, 1.0, 0.0]), np.array([0.0, 1.0, 0.0])  # statics of the rod: forces along u and v
+    rows = [np.concatenate([e, np.cross(place, e)]) for place in places for e in (u, v)]
+    push = np.array([0.0, 0.0, force])
+    rows += [np.concatenate([axis, np.cross(places[0], axis)]), np.concatenate([np.zeros(3), axis])]
+    on_rod = np.concatenate([push, moment + np.cross(DAMPER["point"], push)])
+    R = np.linalg.solve(np.array(rows).T, -on_rod)
+    assert seats.damper_friction_N == pytest.approx(0.05 * (np.hypot(*R[:2]) + np.hypot(*R[2:4])), rel=1e-3)
+    assert seats.imbalance_N < 1e-9 * force
+    assert seats.imbalance_Nmm < 1e-9 * force * LENGTH
 
 
 def test_the_line_of_a_held_coil_passes_through_the_middle_and_a_shift_of_both_heads_moves_it():

@@ -11,7 +11,7 @@ from mpi4py import MPI
 from coilset.model.case import Case
 from coilset.model.equilibrium.path.branch_switching import Snap
 from coilset.model.equilibrium.path.continuation import Continuation
-from coilset.model.equilibrium.path.stability import negative_pivots
+from coilset.model.equilibrium.path.stability import mode_in_words, negative_pivots
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.results.records.buckling import axis_offset, buckling, critical_travel, vanishing
 from coilset.model.results.records.record import Step
@@ -56,6 +56,18 @@ def test_negative_pivots_are_negative_eigenvalues(travel):
     expected = int((np.linalg.eigvalsh(dense(analysis)) < 0.0).sum())
     assert (expected > 0) == (travel > HARINGX)
     assert negative_pivots(analysis.stability._factors(analysis.newton.iteration.load)) == expected
+
+
+def test_what_gives_way_is_named():
+    """A slender spring as a whole, at mid height; else the coils that move against each other."""
+    analysis = pressed(1.0, 1, mesh=4)
+    analysis.run()
+    assert analysis._gives_way() == "the spring as a whole gives way sideways, most at turn 20.00"
+    turns = np.linspace(0.0, 5.0, 51)
+    near = np.exp(-((turns - 2.5) ** 2) / 0.1)
+    words = "the coils at turns 1.50 and 2.50 give way against each other, "
+    assert mode_in_words(np.outer(near, [1.0, 0.0, 0.5]), turns) == words + "sideways"
+    assert mode_in_words(np.outer(near, [0.0, 0.5, 1.0]), turns) == words + "up and down"
 
 
 def test_factors_of_other_libraries_show_no_pivots():

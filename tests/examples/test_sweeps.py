@@ -20,6 +20,7 @@ CASES = {
     "scatter": 1000,
     "thousand": 1000,
     "tolerances": (4 + 2) * 32,  # Sobol indices: two blocks of samples, and one for each input
+    "valve_tolerances": 500,
 }
 
 

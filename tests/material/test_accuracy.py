@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from coilset.model.material import library, points
+from coilset.model.material import library
+from coilset.model.material.point import points
 from coilset.verification.references import heun
 
 INCREMENT = 1e-4

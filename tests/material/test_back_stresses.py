@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from coilset.model.base.errors import InputError
-from coilset.model.material import library, points, programs
+from coilset.model.material import library, programs
 from coilset.model.material.law.parts import saturation
-from coilset.model.material.point import back_stresses, increment
+from coilset.model.material.point import back_stresses, increment, points
 
 LAW = library.load("chaboche")
 TERMS = [(200000.0, 1000.0), (22500.0, 150.0), (2000.0, 20.0)]  # C and γ of the file

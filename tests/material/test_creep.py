@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from coilset.model.material import library, points
+from coilset.model.material import library
+from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
 from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
-from coilset.model.material.law_over_time import LawOverTime
-from coilset.model.material.point import increment, rod, solid
-from coilset.model.material.point_law import rod_map
+from coilset.model.material.point import increment, points, rod, solid
+from coilset.model.material.point.choice import rod_map
 
 COLD, WARM, ALPHA = 293.15, 473.15, 1.2e-5
 MODULI = {COLD: (80000.0, 0.29), WARM: (74000.0, 0.31)}

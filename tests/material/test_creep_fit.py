@@ -15,7 +15,7 @@ from coilset.model.material.identification import creep_fit
 from coilset.model.material.identification.relaxation_tests import Readings, read_relaxation
 from coilset.model.material.identification.relaxing import loss
 from coilset.model.material.law.file import Creep
-from coilset.model.material.point_law import rod_map
+from coilset.model.material.point.choice import rod_map
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.time import creep_fit as studies
 

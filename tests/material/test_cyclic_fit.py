@@ -6,9 +6,10 @@ import yaml
 from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError
-from coilset.model.material import library, points, programs
+from coilset.model.material import library, programs
 from coilset.model.material.identification import cyclic
 from coilset.model.material.identification.experiments import Test
+from coilset.model.material.point import points
 from coilset.scripts.commands.material import app
 
 G, NU = 80000.0, 0.3

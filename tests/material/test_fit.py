@@ -9,8 +9,9 @@ import yaml
 from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError
-from coilset.model.material import library, points
+from coilset.model.material import library
 from coilset.model.material.identification import experiments, fit
+from coilset.model.material.point import points
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.law import material_fit
 

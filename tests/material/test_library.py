@@ -9,7 +9,8 @@ import yaml
 from scipy.integrate import quad
 
 from coilset.model.base.errors import InputError
-from coilset.model.material import library, points
+from coilset.model.material import library
+from coilset.model.material.point import points
 from coilset.verification.references import heun
 
 

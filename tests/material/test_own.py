@@ -6,8 +6,8 @@ from scipy.optimize import root
 
 from coilset.api import Case, InputError, Law, condense, solve
 from coilset.model.material import library
-from coilset.model.material.points import initial_state, update
-from coilset.verification.references.own_laws import drucker, kinematic, kinematic_3d
+from coilset.model.material.point.points import initial_state, update
+from coilset.verification.references.own_laws import drucker, kinematic, kinematic_3d, mises
 
 PRAGER = library.load("linear_kinematic")
 ZETA = 2.0 / 3.0 * 2000.0
@@ -41,6 +41,17 @@ def test_linear_kinematic_hardening_is_the_built_in(prager):
     assert np.abs(theirs).max() > 400.0
     assert np.abs(ours - theirs).max() < 1e-10 * np.abs(theirs).max()
     assert np.abs(C - D).max() < 1e-9 * np.abs(D).max()
+
+
+def test_isotropic_hardening_by_radial_return_meets_the_built_in_as_increments_become_short():
+    """Backward Euler is of first order where the strain turns, the built-in law of second."""
+    theirs, law, worst = library.load("linear_isotropic"), Law(mises, [210e3, 80769.2308, 400.0, 2000.0], ["p"]), []
+    for parts in (50, 100):
+        increments = np.repeat(path(6) / parts, parts, axis=0)
+        found, exact = (driven(one, increments)[0] for one in (law, theirs))
+        worst.append(np.abs(found - exact).max() / np.abs(exact).max())
+    assert worst[1] < 2.5e-3
+    assert worst[0] / worst[1] == pytest.approx(2.0, abs=0.2)
 
 
 def condensed_built_in(increments):

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from coilset.model.base.errors import InputError
-from coilset.model.material import library, points
-from coilset.model.material.creep.rate import law_in_time
+from coilset.model.material import library
+from coilset.model.material.creep.in_time import law_in_time
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.functions import CHANGE, TEMPERATURE
 from coilset.model.material.law.law import Law
+from coilset.model.material.point import points
 from coilset.model.material.point.increment import advance
 from coilset.verification.references.point_rates import PointRates, Segment
 

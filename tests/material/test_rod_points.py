@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from coilset.model.material import library
+from coilset.model.material.point.points import initial_state
 from coilset.model.material.point.rod import return_map
 from coilset.model.material.point.rod_rows import GROUP, return_map_points
-from coilset.model.material.points import initial_state
 
 MATERIALS = ("ck15", "linear_isotropic", "linear_kinematic", "mixed", "ideal_plastic", "voce")
 POINTS = 2 * GROUP + 7  # groups that are full, and one that is not

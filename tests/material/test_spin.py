@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.material import library, points
+from coilset.model.material import library
+from coilset.model.material.point import points
 from coilset.model.material.point.spin import WHOLE, Crossing, spun
 
 STATE, BACK = np.array([300.0, 150.0, -80.0]), np.array([20.0, -30.0, 10.0])

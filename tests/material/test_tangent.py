@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.material import library, points
+from coilset.model.material import library
+from coilset.model.material.point import points
 
 STEPS = 10.0 ** np.arange(-2.5, -4.01, -0.5)
 

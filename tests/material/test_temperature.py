@@ -10,7 +10,8 @@ import pytest
 import yaml
 
 from coilset.model.base.errors import InputError
-from coilset.model.material import library, points, programs
+from coilset.model.material import library, programs
+from coilset.model.material.point import points
 from coilset.model.solid.points import MaterialPoints
 from coilset.verification.references import heun
 

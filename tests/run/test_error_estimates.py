@@ -6,7 +6,7 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.base.errors import SolveError
-from coilset.model.case import read_case
+from coilset.model.case import check, read_case
 from coilset.model.results.records.labels import largest_errors, within
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
@@ -27,10 +27,10 @@ def clamped(example):
     return analysed(example, "ends=clamped", "accuracy=50 %")
 
 
-def test_the_total_is_the_sum_of_four_causes_and_is_in_the_history(clamped):
+def test_the_total_is_the_sum_of_its_causes_and_is_in_the_history(clamped):
     analysis, summary = clamped
     parts = summary["estimated_errors"]
-    assert list(parts) == ["steps", "mesh", "section", "contact"]
+    assert list(parts) == ["steps", "mesh", "section", "contact", "warping"]
     for total, name in (
         ("estimated_force_error_N", "force_N"),
         ("estimated_set_error_mm", "set_mm"),
@@ -42,6 +42,7 @@ def test_the_total_is_the_sum_of_four_causes_and_is_in_the_history(clamped):
     assert top.estimated_force_error_N == pytest.approx(summary["estimated_force_error_N"])
     assert json.loads(json.dumps(summary["estimated_errors"])) == parts
     assert parts["contact"]["force_N"] == 0.0  # nothing touches
+    assert parts["warping"]["force_N"] == 0.0  # it is round
     assert not [one for one in summary["warnings"] if one["name"] == "error"]
 
 
@@ -67,6 +68,25 @@ def test_contact_is_off_by_what_a_stiffer_bedding_changes(example):
     _, stiff = analysed(example, "contact.bedding=1050000", estimates=False)  # twenty times the default
     true = stiff["force_max_N"] - summary["force_max_N"]
     assert 0.5 < summary["estimated_errors"]["contact"]["force_N"] / true < 2.0
+
+
+def test_elastic_warping_is_off_by_what_free_warping_changes():
+    """A turn of oval wire, far beyond yield."""
+    spring = {"wire": {"oval": {"width": 5.0, "height": 3.0}}, "mean_diameter": 30.0, "turns": 1.0, "pitch": 9.0}
+    loading = [{"to": {"travel": 4.0}, "steps": 4}, {"to": {"force": 0}, "steps": 1}]
+    data = {"spring": spring, "material": "ck15", "ends": "clamped", "loading": loading, "accuracy": "50 %"}
+
+    def pressed(estimates, **section):
+        case = check(data | {"mesh": {"elements_per_turn": 8, "section": section}})
+        analysis = Analysis(case, MPI.COMM_SELF, False, estimates=estimates)
+        analysis.run()
+        return summarise(analysis.setup, analysis.result)
+
+    curved, free = pressed(True), pressed(False, kind="warping", degree=5)
+    for number, value in (("force_N", "force_max_N"), ("set_mm", "set_mm")):
+        true = abs(free[value] - curved[value])
+        assert curved["estimated_errors"]["warping"][number] == pytest.approx(true, rel=0.3)
+    assert not [one for one in curved["warnings"] if one["name"] == "elastic warping"]
 
 
 def test_a_companion_that_finds_no_equilibrium_leaves_the_errors_unknown(example, monkeypatch):

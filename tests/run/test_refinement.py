@@ -17,7 +17,7 @@ FINE = ["mesh={}", "ends=clamped", "accuracy=0.01 %", "loading=[{to: {travel: 14
 
 def errors(steps, mesh, section, contact):
     """Of the force."""
-    return RunErrors(*(Errors(part, None, None) for part in (steps, mesh, section, contact)))
+    return RunErrors(*(Errors(part, None, None) for part in (steps, mesh, section, contact, 0.0)))
 
 
 def test_only_what_counts_is_made_finer_by_its_order():

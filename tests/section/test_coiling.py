@@ -10,7 +10,7 @@ from coilset.model.base.errors import SolveError
 from coilset.model.manufacture.coiling import _coiled, coil
 from coilset.model.material import library
 from coilset.model.material.creep.law import CreepLaw
-from coilset.model.material.points import initial_state
+from coilset.model.material.point.points import initial_state
 from coilset.model.section.rules import polar
 from coilset.model.section.wire import Wire
 from coilset.verification.references.springback import Bar

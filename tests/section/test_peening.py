@@ -6,7 +6,7 @@ from scipy.integrate import quad
 
 from coilset.model.manufacture.peening import Layer, peen, peening_warnings
 from coilset.model.material import library
-from coilset.model.material.points import initial_state
+from coilset.model.material.point.points import initial_state
 from coilset.model.section.rules import polar, rim
 
 RADIUS = 2.5

@@ -126,3 +126,21 @@ def test_the_sheet_has_the_formulas_of_part_3():
 def test_guides_that_do_not_fit_are_refused(contact, words):
     with pytest.raises(InputError, match=words):
         Analysis(check(data({"turn": 1.0}, contact=contact)), MPI.COMM_SELF)
+
+
+def test_friction_on_the_arbor_takes_part_of_the_torque():
+    """The arbor takes a part of the torque that turns the top head, at most μ Σ p R, where all of the wire slides."""
+    μ, arbor = 0.2, 26.0
+    contact = {"arbor": arbor, "friction": {"guides": μ}}
+    entries = data({"turn": 60.0}, contact=contact, heads={"top": {"sideways": "free"}})
+    spring = entries["spring"] | {"turns": 2.0}
+    case = check(entries | {"spring": spring, "loading": [entries["loading"][0] | {"steps": 12}]})
+    analysis = Analysis(case, MPI.COMM_SELF)
+    analysis.run()
+    seats = analysis.result.seats[-1]
+    pressed = sum(part.pressure.sum() for part in analysis.system.gathered_contacts()[1:2])
+    lost = abs(seats.top.moment_z_Nmm + seats.bottom.moment_z_Nmm)
+    assert pressed > 1.0
+    assert 0.3 < lost / (μ * pressed * 0.5 * arbor) < 1.0
+    assert abs(seats.top.moment_z_Nmm) > abs(seats.bottom.moment_z_Nmm)
+    assert max(seats.imbalance_N, seats.imbalance_Nmm / arbor) < 1e-7 * abs(seats.top.moment_z_Nmm) / arbor

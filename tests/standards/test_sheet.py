@@ -129,6 +129,8 @@ def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
     assert endured.value == pytest.approx(line.stress_range(shown["lower stress τk1"].value))
     assert endured.found == pytest.approx(line.stress_range(shown["lower stress τk1"].value - 60.0))
     assert endured.found > endured.value
+    assert "preset springs" in endured.formula
+    assert endured.why.endswith("the line is of preset springs, so it may count twice")
 
 
 def test_what_a_run_found_at_block_and_when_it_buckled(tmp_path):
@@ -155,6 +157,7 @@ def test_line_of_the_goodman_diagram():
     assert line.stress_range(650.0) == 60
     assert line.stress_range(800.0) == 0
     assert line.times == "10⁷"
+    assert line.tested == "preset springs"
 
 
 CASE = """spring: {wire_diameter: 4.0, mean_diameter: 32.0, turns: 7.5, free_length: 60.0, end_coils: closed and ground}
@@ -234,7 +237,8 @@ def test_wires_are_listed(capsys):
     printed = capsys.readouterr().out
     assert "d = 0.5 to 17: 1834 − 488 lg d, at most 1900 MPa" in printed
     assert "0.56 Rm, uncorrected stress" in printed
-    assert "1e+07 times: upper stress 375 − 117 lg d over 0, 889 − 263 lg d over 669 − 183 lg d MPa" in printed
+    assert "1e+07 times, preset springs: upper stress 375 − 117 lg d over 0, 889 − 263 lg d" in printed
+    assert "over 669 − 183 lg d MPa" in printed
     assert "not found: endurance of all wires of CrV, SiCr and SiCrV" in printed
     with pytest.raises(InputError, match="'copper' is not a known wire"):
         list_wires("copper")

@@ -5,7 +5,7 @@ import pytest
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
-from coilset.model.material.points import initial_state, update
+from coilset.model.material.point.points import initial_state, update
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.hardening import curve
 from coilset.model.standards.wires.law import case_law, wire_law

@@ -7,6 +7,7 @@ import pytest
 
 from coilset.model.base.errors import InputError
 from coilset.model.base.yaml import read_data
+from coilset.model.standards import goodman
 from coilset.model.standards.wires import library, names, wire
 from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.library import FOLDER
@@ -219,12 +220,14 @@ def test_own_wires_stand_beside_those_of_standards(tmp_path, monkeypatch):
     folder = tmp_path / "coilset" / "wires"
     folder.mkdir(parents=True)
     ours = (library.FOLDER / "en10270-1.yaml").read_text(encoding="utf-8")
-    (folder / "mine.yaml").write_text(re.sub(r"(?m)^standard: .*$", "standard: Works", ours), encoding="utf-8")
+    works = re.sub(r"(?m)^standard: .*$", "standard: Works", ours).replace("springs: preset", "springs: not preset")
+    (folder / "mine.yaml").write_text(works, encoding="utf-8")
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     library.files.cache_clear()
     library._wires.cache_clear()
     try:
         assert wire("Works SH").strength(4.0) == wire("EN 10270-1 SH").strength(4.0)
+        assert goodman.line(wire("Works SH").endurance(), 4.0).tested == "springs not preset"
         (folder / "again.yaml").write_text(ours, encoding="utf-8")
         library.files.cache_clear()
         with pytest.raises(InputError, match=r"again.yaml: standard: 'EN 10270-1' is there already"):

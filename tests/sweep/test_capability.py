@@ -1,7 +1,5 @@
 """Capability: known distributions, controlled estimates against all rods, what to tighten."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from scipy import stats
@@ -56,8 +54,7 @@ def test_the_input_with_the_greatest_share_is_to_be_tightened():
     wire, turns = generator.normal(4.0, 0.02, 400), generator.normal(7.5, 0.02, 400)
     force = 250.0 + 200.0 * (wire - 4.0) + 60.0 * (turns - 7.5)  # deviations of 4 and 1.2 N
     data = xarray.Dataset({"force_at_37_N": ("case", force)}, {"wire": ("case", wire), "turns": ("case", turns)})
-    plan = SimpleNamespace(names=["wire", "turns"], spec=SimpleNamespace(model="rod"))
-    found = _capability(plan, data, LIMIT)
+    found = _capability(data.assign_attrs(inputs=["wire", "turns"]), LIMIT)
     assert dict(found.parts)["wire"] == pytest.approx(16.0 / 17.44, abs=0.05)
     wanted = 10.0 / (3.0 * 1.33)
     part = np.sqrt((wanted**2 - 1.44) / 16.0)  # of the wire's tolerance, so that both together have `wanted`

@@ -46,7 +46,7 @@ def test_a_folder(tmp_path):
     assert dot.lines[0].get_ydata() == [185.0]
     assert len(figure(replace(found, rows=[lost]), "spring").axes) == 1
     (tmp_path / "measured.csv").write_text(HEAD + "sett_mm;9;0,1;;;\n")
-    with pytest.raises(InputError, match=r"line 2: 'sett_mm' is none that this run has"):
+    with pytest.raises(InputError, match=r"line 2: 'sett_mm' is none that a run has; is set_mm meant\?"):
         compare(tmp_path, tmp_path / "results", overwrite=True)
     (tmp_path / "measured.csv").write_text("quantity,value\nset_mm,9\n")
     with pytest.raises(InputError, match="column error: is missing"):

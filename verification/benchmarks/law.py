@@ -16,8 +16,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from coilset.model.material import library, points
+from coilset.model.material import library
 from coilset.model.material.law.law import Law
+from coilset.model.material.point import points
 from coilset.verification.references import heun
 
 POINTS = 4000

@@ -34,8 +34,8 @@ from coilset.model.material.law.functions import (
 )
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.local import TOO_HOT, yield_crossing
-from coilset.model.material.points import refuse
-from coilset.model.material.points import update as update_points
+from coilset.model.material.point.points import refuse
+from coilset.model.material.point.points import update as update_points
 from coilset.model.material.programs import History, Program
 
 MAX_SUBSTEPS = 20000
@@ -387,7 +387,7 @@ def update(
     temperature: float | tuple[float, float] | None = None,
     tolerance: float | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Advance points by strain increments, as `coilset.model.material.points.update`.
+    """Advance points by strain increments, as `coilset.model.material.point.points.update`.
 
     Args:
         law, state, increments, temperature: as there; k², ζ, κ, heating and spin.

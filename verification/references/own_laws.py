@@ -1,4 +1,4 @@
-"""Laws written for `coilset.api.Law`, independently of the built-in ones: Prager in both forms, and Drucker.
+"""Laws written for `coilset.api.Law`, independently of the built-in ones: Prager in both forms, Drucker, von Mises.
 
 Linear kinematic hardening, |n| = k, Ḃ = ζ ḋ, ṅ = ė − (c + ζ) ḋ, with ḋ = λ n for constant λ and ė, has the solution
 
@@ -159,3 +159,51 @@ def drucker(stress, state, strain, parameters, new_stress, new_state, tangent): 
         for j in range(3):
             tangent[i, j] = inverse[i, j]
     return x[3] >= 0.0
+
+
+@COMPILED
+def mises(stress, state, strain, parameters, new_stress, new_state, tangent):  # type: ignore[no-untyped-def]
+    """Von Mises of a fibre with linear isotropic hardening; parameters E, G, yield stress, H; state[4] is εp.
+
+    Backward Euler: σ = σ_tr/(1 + E μ), τ = τ_tr/(1 + 3 G μ), μ = Δεp/q, with q (1 − H μ) = k + H εp. Written number by
+    number, which numba compiles to faster code than slices and small arrays.
+    """
+    E, G, k, H = parameters
+    s, t, u = stress[0] + E * strain[0], stress[1] + G * strain[1], stress[2] + G * strain[2]
+    for i in range(5):
+        new_state[i] = state[i]
+    q = np.sqrt(s * s + 3.0 * (t * t + u * u))
+    limit = k + H * state[4]
+    if q <= limit * (1.0 + 1e-12):
+        new_stress[0], new_stress[1], new_stress[2] = s, t, u
+        tangent[0, 0], tangent[0, 1], tangent[0, 2] = E, 0.0, 0.0
+        tangent[1, 0], tangent[1, 1], tangent[1, 2] = 0.0, G, 0.0
+        tangent[2, 0], tangent[2, 1], tangent[2, 2] = 0.0, 0.0, G
+        return True
+    m = (q - limit) / (q * (3.0 * G + H))
+    for _iteration in range(30):
+        a, c = 1.0 / (1.0 + E * m), 1.0 / (1.0 + 3.0 * G * m)
+        ss, tt = (a * s) ** 2, 3.0 * c * c * (t * t + u * u)
+        q = np.sqrt(ss + tt)
+        dq = -(ss * a * E + tt * c * 3.0 * G) / q
+        step = (q * (1.0 - H * m) - limit) / (dq * (1.0 - H * m) - H * q)
+        m -= step
+        if abs(step) <= 1e-10 * m:
+            break
+    else:
+        return False
+    a, c = 1.0 / (1.0 + E * m), 1.0 / (1.0 + 3.0 * G * m)
+    s, t, u = a * s, c * t, c * u
+    q = np.sqrt(s * s + 3.0 * (t * t + u * u))
+    new_stress[0], new_stress[1], new_stress[2] = s, t, u
+    new_state[4] = state[4] + m * q
+    new_state[3] = state[3] + m * q * q
+    x, y, z = a * s / q * (1.0 - H * m), 3.0 * c * t / q * (1.0 - H * m), 3.0 * c * u / q * (1.0 - H * m)
+    dq = -(s * s * a * E + 3.0 * (t * t + u * u) * c * 3.0 * G) / q
+    g = dq * (1.0 - H * m) - H * q
+    p0, p1, p2 = -x / g * E, -y / g * G, -z / g * G
+    d0, d1, d2 = -E * a * s, -3.0 * G * c * t, -3.0 * G * c * u
+    tangent[0, 0], tangent[0, 1], tangent[0, 2] = a * E + d0 * p0, d0 * p1, d0 * p2
+    tangent[1, 0], tangent[1, 1], tangent[1, 2] = d1 * p0, c * G + d1 * p1, d1 * p2
+    tangent[2, 0], tangent[2, 1], tangent[2, 2] = d2 * p0, d2 * p1, c * G + d2 * p2
+    return True

@@ -43,6 +43,7 @@ class Descent:
         released: energy dissipated by the drag, N mm.
         drag_force: c M (x − x₀) at the last state.
         moved: length of the last step, mm.
+        speed, before: drag times length of the last step and of the one before it, N.
         failed: number of consecutive failed steps.
     """
 
@@ -54,12 +55,14 @@ class Descent:
     drag_force: np.ndarray
     released: float = 0.0
     moved: float = 0.0
+    speed: float = 0.0
+    before: float = 0.0
     failed: int = 0
 
     @property
     def is_stuck(self) -> bool:
-        """Whether it hardly moves although it is unstable."""
-        return self.weakest.negative > 0 and self.moved < STUCK * self.advance
+        """Whether it hardly moves although it is unstable, and no faster than before."""
+        return self.weakest.negative > 0 and self.moved < STUCK * self.advance and self.speed <= self.before
 
     def adapt(self) -> None:
         """Set the drag for a next step of the right length."""
@@ -141,6 +144,7 @@ class Snap:
         force = drag.forces(way)
         descent.released += 0.5 * sum_of_ranks(self.system.comm, (descent.drag_force + force) @ way)
         descent.drag_force, descent.origin = force, np.zeros_like(way)
+        descent.before, descent.speed = descent.speed, descent.drag * moved
         descent.moved, descent.failed = moved, 0
         descent.weakest = weakest = self.stability.weakest(load)
         self.system.commit()

@@ -43,6 +43,7 @@ class Continuation:
 
     Attributes:
         refusal: why the trial state is impossible although forces balance, in words; None if it is possible.
+        cause: what gives way at the last equilibrium, in words.
         steps: StepSizes, which also hold the position on the path.
         number: of steps so far.
         negative_pivots: of the tangent at the last equilibrium; 0 if it is stable.
@@ -61,6 +62,7 @@ class Continuation:
         self.penetration_limit, self.starts = penetration_limit, starts or self.from_last_step
         self.stability, self.negative_pivots, self.step_error = stability, 0, step_error
         self.refusal: Callable[[], str | None] = lambda: None
+        self.cause: Callable[[], str] = lambda: ""
         self.steps, self.number = StepSizes(self.control), 0
         self.guess = Guess(self.system, self.control.bend)
         self._spent: list[Outcome] = []  # all solves of the step in progress
@@ -203,18 +205,19 @@ class Continuation:
         near = size <= (1.0 + ON_MARK) * control.cut**control.unstable_cuts
         return shortest or near or self.steps.position.cuts >= control.unstable_cuts
 
-    def _snap(self, load: Callable[[], Load]) -> Outcome:
+    def _snap(self, path: Path, place: float) -> Outcome:
         """Leave a path that ends or becomes unstable, and find a stable state.
 
         If none is found everything is restored; an unstable state is then kept, with its negative pivots.
 
         Args:
-            load: the load of the step from the last equilibrium, whichever that is.
+            path: it.
+            place: on it, where to find that state, in regular steps.
         """
         assert self.stability is not None
-        there = self._unstable
+        there, load = self._unstable, partial(path.load, place)
         before = self.system.state.copy()
-        outcome = Snap(self.stability, self.control, self._solve_once).go(load, there)
+        outcome = Snap(self.stability, self.control, partial(self._snap_step, path)).go(load, there)
         if outcome.converged:
             free = f"set {outcome.released:.3g} N mm free" if outcome.released else "set no energy free: its path forks"
             log.info("step %d: the spring left its path and %s", self.number + 1, free)
@@ -233,7 +236,9 @@ class Continuation:
             outcome = replace(outcome, negative_pivots=self.stability.negative_pivots(load))
         return self._conclude(outcome, 0.0)
 
-    def _solve_once(self, load: Load, start: Start) -> Outcome:
+    def _snap_step(self, path: Path, load: Load, start: Start) -> Outcome:
+        if self.steps.stalls(path, self.system.evaluations):
+            return Outcome(False, "the program stalls", math.inf)
         return self._judged(self._newton(load, start))
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
@@ -256,12 +261,16 @@ class Continuation:
             The step's Outcome, with the cost of failed attempts, and how often it was cut.
 
         Raises:
-            SolveError: if it failed down to the smallest size, or the program stalls; the state is that of the last
-                converged step.
+            SolveError: if it failed down to the smallest size, or the program stalls, see `StepControl.patience`; the
+                state is that of the last converged step.
         """
         self._spent.clear()
         self._unstable, unstable_at = None, 0.0
+        outcome: Outcome | None = None
         while True:
+            if self.steps.stalls(path, self.system.evaluations):
+                tried = f"{self.control.patience} states were tried and led less than a thousandth of the way"
+                raise path.failure(tried, "" if outcome is None else outcome.reason, self.cause())
             begun = self.steps.position
             size = self.steps.size(path)
             load, length = path.load(begun.done + size), path.step_length(begun.done, size)
@@ -273,7 +282,7 @@ class Continuation:
             # no snaps while time passes: a path that ends there ends the run
             if not outcome.converged and path.moment is None and self._ends_here(size, outcome):
                 there = size if self._unstable is None else unstable_at
-                beside = self._snap(partial(path.load, begun.done + there))
+                beside = self._snap(path, begun.done + there)
                 if beside.converged:
                     outcome, size = beside, there
                 self._unstable = None  # once a step
@@ -289,4 +298,4 @@ class Continuation:
                 "step %d: cut to %.4g of a regular step (%s)", self.number + 1, self.steps.position.size, outcome.reason
             )
         else:
-            raise path.failure(outcome.reason)
+            raise path.failure(outcome.reason, "" if outcome.refused else self.cause())

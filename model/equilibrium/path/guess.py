@@ -8,12 +8,17 @@ of a next step of length h, so that
 is wrong by terms of third order, h r₂ alone by terms of second order. Rotation vectors may be added so because those of
 neighbouring steps are nearly parallel. At a kink of the path, where the wire begins to yield or a contact closes, the
 rates differ more than they would along a smooth one, and r₂ alone is the better guess.
+
+Where a head is turned, sections turn by much more than they bend, and rates are nearly constant in the sections' own
+directions, not in space. They are then carried on with the sections: with the rotations φ per length of the last step,
+by exp(φ (h + h₂)/2) from the middle of the last step, and by exp(φ (h + 2 h₂ + h₁)/2) from that of the step before.
 """
 
 import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.path.step_control import Position
+from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
 
@@ -26,12 +31,14 @@ class Guess:
         bend: part of h r₂ that the difference of the rates may add to it; with more the path has a kink.
 
     Attributes:
+        carried: whether rates are carried on with the sections.
         too_far: increments of a step that was given up for its error only, and its length.
         probed: increments under a load that was only tried from the last equilibrium, and that load.
     """
 
     def __init__(self, system: System, bend: float) -> None:
         self.system, self.bend = system, bend
+        self.carried = False
         self.too_far: tuple[PETSc.Vec, float] | None = None
         self.probed: tuple[PETSc.Vec, Load] | None = None
         self._last = system.state["increments"]
@@ -54,13 +61,13 @@ class Guess:
         extrapolation does not: that with less force out of balance is taken.
         """
         if self.too_far is None:
-            return self._along_path(position, size) if position.last else self._as_probed(load)
+            return self._along_path(load, position, size) if position.last else self._as_probed(load)
         guess, length = self.too_far
         shorter = guess.copy()
         shorter.scale(size / length)
         if not position.before:
             return shorter
-        along = self._along_path(position, size)
+        along = self._along_path(load, position, size)
         return min(shorter, along, key=lambda start: self._out_of_balance(load, start))
 
     def _as_probed(self, load: Load) -> PETSc.Vec | None:
@@ -74,17 +81,28 @@ class Guess:
         guess.scale(load.multiple_of(probe))
         return guess
 
-    def _along_path(self, position: Position, size: float) -> PETSc.Vec:
-        guess = self.scaled_last(size / position.before)
-        if position.earlier:
-            last, earlier = position.before, position.earlier
-            difference = guess.duplicate(self._before.equilibrium)
+    def _along_path(self, load: Load, position: Position, size: float) -> PETSc.Vec:
+        last, earlier = position.before, position.earlier
+        guess = self._rate(self._last.equilibrium, load, 0.5 * (size + last) / last)
+        guess.scale(size / last)
+        if earlier:
+            difference = self._rate(self._before.equilibrium, load, 0.5 * (size + 2.0 * last + earlier) / last)
             difference.scale(-size / earlier)
             difference.axpy(1.0, guess)
             difference.scale((size + last) / (earlier + last))
             if difference.norm() <= self.bend * guess.norm():
                 guess.axpy(1.0, difference)
         return guess
+
+    def _rate(self, increments: np.ndarray, load: Load, further: float) -> PETSc.Vec:
+        """A step's increments, those of free unknowns turned as its sections do in `further` last steps."""
+        values = increments.copy()
+        if self.carried:
+            layout = self.system.layout
+            assert isinstance(layout, LineLayout)
+            layout.turn(values, further * self._last.equilibrium)
+            values[load.held] = increments[load.held]
+        return self.system.layout.vector(values)
 
     def _out_of_balance(self, load: Load, start: PETSc.Vec) -> float:
         forces = start.duplicate()

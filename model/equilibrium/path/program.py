@@ -21,6 +21,7 @@ from coilset.model.equilibrium.system.load import Load
 
 log = logging.getLogger("coilset.steps")
 START = Moment(0.0, 0.0)
+STILL, STILL_FORCE = 1e-9, 1e-10  # mm, and over E A: heights and forces differ by no more where they stay
 FIRST_TIME = 1e-6  # of a hold: below it equal steps are equal times, above it equal factors of time
 
 
@@ -141,7 +142,8 @@ class LoadProgram:
             SolveError: as Continuation.advance.
         """
         self.stage, continuation = self.redirected or stage, self.continuation
-        self.control.measure = self._measure(self.stage)
+        self.control.measure = measure = self._measure(self.stage)
+        continuation.guess.carried = measure % SEAT_DOFS >= SEAT_DOFS // 2  # a rotation
         while continuation.steps.position.done < self._regular(self.stage):
             path = self._path(self.stage)
             before = path.progress(continuation.steps.position.done)
@@ -241,7 +243,9 @@ class LoadProgram:
 
     def _measure(self, stage: Stage) -> int:
         """The freedom that a stage drives: the axial one, unless it stays and another is driven."""
-        stays = stage.value is None or stage.value == (self._force if stage.kind == "force" else self._height)
+        by_force, axial_force = stage.kind == "force", self.control.system.body.axial_force
+        begin, still = (self._force, STILL_FORCE * axial_force) if by_force else (self._height, STILL)
+        stays = stage.value is None or abs(stage.value - begin) <= still
         driven = [drive.freedom for drive in stage.drives if drive.end is not None]
         if not stays or not driven:
             return AXIAL

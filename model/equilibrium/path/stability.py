@@ -22,6 +22,7 @@ from coilset.model.equilibrium.system.load import Load
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
 ITERATIONS = 12
+APART = 0.5  # of a mode's greatest displacement: coils whose displacements differ by more move against each other
 
 
 @dataclass(frozen=True)
@@ -114,6 +115,24 @@ class Stability:
     def greatest_displacement(self, mode: PETSc.Vec) -> float:
         """Of the stations, mm; collective."""
         return float(np.linalg.norm(self.displacements(mode), axis=1).max())
+
+
+def mode_in_words(mode: np.ndarray, turns: np.ndarray) -> str:
+    """Where and how the wire gives way in a mode.
+
+    Args:
+        mode: displacements of the stations, shape (n, 3), mm.
+        turns: of the stations, shape (n,).
+    """
+    at = int(np.linalg.norm(mode, axis=1).argmax())
+    u, turn = mode[at], turns[at]
+    way = "sideways" if np.hypot(u[0], u[1]) > abs(u[2]) else "up and down"
+    beside = np.array([other for other in (turn - 1.0, turn + 1.0) if turns[0] <= other <= turns[-1]])
+    apart = [float(np.linalg.norm(u - [np.interp(other, turns, v) for v in mode.T])) for other in beside]
+    if not apart or max(apart) < APART * np.linalg.norm(u):
+        return f"the spring as a whole gives way {way}, most at turn {turn:.2f}"
+    pair = sorted((turn, beside[int(np.argmax(apart))]))
+    return f"the coils at turns {pair[0]:.2f} and {pair[1]:.2f} give way against each other, {way}"
 
 
 def _negative(factors: PETSc.PC) -> int:

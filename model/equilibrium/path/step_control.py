@@ -13,6 +13,7 @@ from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Load
 
 ON_MARK = 1e-9  # of a regular step: what is nearer to a mark is on it
+ADVANCE = 1e-3  # of a path, which `patience` evaluations must bring
 
 
 @dataclass(frozen=True)
@@ -44,11 +45,10 @@ class Path:
         """Length of a step of a size from a place on the path, both in regular steps; in their mean length."""
         return size if self.length is None else self.length(done + size) - self.length(done)
 
-    def failure(self, reason: str) -> SolveError:
-        """The error of a path that ends where the body is."""
-        reachable = self.reachable()
-        after = f"; {reachable}" if reachable else ""
-        return SolveError(f"no equilibrium beyond {self.place()} on the way to {self.target}: {reason}{after}")
+    def failure(self, *reasons: str) -> SolveError:
+        """The error of a path that ends where the body is, for reasons of which some may be empty."""
+        why = "; ".join(reason for reason in (*reasons, self.reachable()) if reason)
+        return SolveError(f"no equilibrium beyond {self.place()} on the way to {self.target}: {why}")
 
     def progress(self, done: float) -> float:
         """Part of the path up to a place on it, which is counted in regular steps."""
@@ -87,25 +87,19 @@ class StepSizes:
     """
 
     def __init__(self, control: StepControl) -> None:
-        self.control, self.position, self._attempts = control, Position(), 0
+        self.control, self.position = control, Position()
+        self._mark: tuple[float, int] | None = None  # where the path was last found to advance, and evaluations then
 
     def begin(self) -> None:
         """Stand at the start of a path."""
-        self.position, self._attempts = Position(), 0
+        self.position, self._mark = Position(), None
 
     def resize(self, size: float) -> None:
         """Make the next step as large as `size` regular steps."""
         self.position = replace(self.position, size=size)
 
     def size(self, path: Path) -> float:
-        """Size of the step to try now, in regular steps.
-
-        Raises:
-            SolveError: if the program stalls: more has been tried than its steps allow.
-        """
-        self._attempts += 1
-        if self._attempts > self.control.attempts * path.regular + self.control.spare_attempts:
-            raise path.failure(f"the program stalls, {self._attempts} solves")
+        """Size of the step to try now, in regular steps."""
         position = self.position
         size = min(position.size, path.regular - position.done)
         if path.automatic:
@@ -113,6 +107,13 @@ class StepSizes:
         # on its way to the next mark, or to a later one if it was made as long as that
         mark = max(int(position.done + ON_MARK) + 1, int(position.done + size + ON_MARK))
         return min(size, mark - position.done)
+
+    def stalls(self, path: Path, evaluations: int) -> bool:
+        """Whether `patience` evaluations have hardly advanced the body; `evaluations` of all so far."""
+        done = self.position.done
+        if self._mark is None or done - self._mark[0] >= min(1.0, ADVANCE * path.regular) * (1.0 - ON_MARK):
+            self._mark = done, evaluations
+        return evaluations - self._mark[1] > self.control.patience
 
     def accept(self, path: Path, outcome: Outcome, size: float) -> None:
         """Stand at the end of a step of this size."""

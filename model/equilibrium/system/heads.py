@@ -35,6 +35,7 @@ class Holding(NamedTuple):
         turning: of clamped ends: whether a head ever rotates.
         stations: of clamped ends: those that belong to the heads, from the first and from the last one.
         at_station: of clamped ends: whether a head's point is at its station, as of a hook, and not on the axis.
+        on_point: of clamped ends: whether a contact holds the wire in the head instead, a Support.
     """
 
     clamped: bool
@@ -43,6 +44,7 @@ class Holding(NamedTuple):
     turning: bool = False
     stations: tuple[int, int] = (0, -1)
     at_station: tuple[bool, bool] = (False, False)
+    on_point: tuple[bool, bool] = (False, False)
 
 
 class Heads:
@@ -65,24 +67,26 @@ class Heads:
         self.system, self.layout, self.free_length, self.radius = system, layout, free_length, radius
         self.clamped, self.measure, self._turning = holding.clamped, AXIAL, holding.turning
         first, last = (station % len(layout.station_dofs) for station in holding.stations)
-        bottom, top = layout.station_dofs[first], layout.station_dofs[last]
         self._points = [
             layout.rod.line.stations[station] * ([1.0, 1.0, 1.0] if there else [0.0, 0.0, 1.0])
             for station, there in zip((first, last), holding.at_station, strict=True)
         ]
         held = [LEVEL, *holding.heads[0], *(SEAT_DOFS + freedom for freedom in holding.heads[1])]
-        if holding.clamped:
-            self.dofs = np.concatenate([bottom, top])
-            components, others = np.arange(6), layout.seat_dofs
-            if holding.turning:
-                for station, point in zip((first, last), self._points, strict=True):
-                    layout.rod.fix_to_head(station, point)
-        else:
-            self.dofs = layout.seat_dofs
-            components = np.delete(np.arange(6), LEVEL) if holding.tips else np.arange(0)
-            others = np.concatenate([bottom[components], top[components]])
+        on_tips = np.delete(np.arange(6), LEVEL) if holding.tips and not holding.clamped else np.arange(0)
+        self.rigid = [holding.clamped and not on_point for on_point in holding.on_point]
+        parts: list[np.ndarray] = []
+        others: list[int] = []
+        self.tips: dict[str, tuple[int, np.ndarray]] = {}
+        for end, rigid, station, point in zip(ENDS, self.rigid, (first, last), self._points, strict=True):
+            seat, own = np.split(layout.seat_dofs, 2)[ENDS.index(end)], layout.station_dofs[station]
+            components = np.arange(6) if rigid else on_tips
+            parts.append(own if rigid else seat)
+            others.extend(seat if rigid else own[components])
+            self.tips[end] = station, components
+            if rigid and holding.turning:
+                layout.rod.fix_to_head(station, point)
+        self.dofs = np.concatenate(parts)
         self.held = {int(dof): 0.0 for dof in (*others, *self.dofs[held])}
-        self.tips = {"bottom": (first, components), "top": (last, components)}
         if holding.clamped and holding.turning:
             seats = system.state["seats"]
             start = np.concatenate([np.pad(point, (0, 3)) for point in self._points])
@@ -106,12 +110,11 @@ class Heads:
         for freedom in forces:
             fixed.pop(int(self.dofs[freedom]), None)
         fixed |= {int(self.dofs[freedom]): value - now[freedom] for freedom, value in values.items()}
-        if self.clamped:
-            for first in (3, SEAT_DOFS + 3):
-                dofs = [int(dof) for dof in self.dofs[first : first + 3]]
-                if all(dof in fixed for dof in dofs):
-                    change = self._between(now[first : first + 3], np.array([fixed[dof] for dof in dofs]))
-                    fixed |= dict(zip(dofs, change.tolist(), strict=True))
+        for rigid, first in zip(self.rigid, (3, SEAT_DOFS + 3), strict=True):
+            dofs = [int(dof) for dof in self.dofs[first : first + 3]]
+            if rigid and all(dof in fixed for dof in dofs):
+                change = self._between(now[first : first + 3], np.array([fixed[dof] for dof in dofs]))
+                fixed |= dict(zip(dofs, change.tolist(), strict=True))
         return Load.of(self.layout, fixed, {int(self.dofs[freedom]): force for freedom, force in forces.items()})
 
     def _between(self, now: np.ndarray, change: np.ndarray) -> np.ndarray:
@@ -190,7 +193,7 @@ class Heads:
 
         For a seat with a groove, the moment that is conjugate to its turn.
         """
-        if not self.clamped and not len(self.tips["top"][1]):
+        if not len(self.tips["top"][1]):
             return float(self.reactions("equilibrium")[AXIAL + 3])
         held = self.on_tip("top")
         x = self.layout.at_station(self.layout.rod.x, self.tips["top"][0])
@@ -228,7 +231,7 @@ class Heads:
         station, components = self.tips[end]
         held = np.zeros(6)
         held[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
-        if self.clamped and self._turning:
+        if self.rigid[ENDS.index(end)] and self._turning:
             chart = self.layout.at_station(self.layout.rod.chart, station)
             x = self.layout.at_station(self.layout.rod.x, station)
             held[3:] = np.linalg.solve(chart.T, held[3:]) - np.cross(x - self.centre(end, x[None]), held[:3])

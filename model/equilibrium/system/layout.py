@@ -9,6 +9,7 @@ from petsc4py import PETSc
 
 from coilset.model.body.state import Field, Where
 from coilset.model.contact.base import SEAT_DOFS
+from coilset.model.rotations.vectors import rotated
 
 if TYPE_CHECKING:
     from coilset.model.rod.rod import Rod
@@ -106,6 +107,13 @@ class LineLayout(Layout):
         n, natural = len(self.station_dofs), np.ones(self.size)
         natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * self.rod.extent) ** 2
         return self.from_order(natural).copy()
+
+    def turn(self, values: np.ndarray, rotations: np.ndarray) -> None:
+        """Turn each station's displacement and rotation in `values` by its rotation in `rotations`, parts here."""
+        moves, turns = self.rod.numbering.u, self.rod.numbering.rotations
+        own = (np.hstack([moves, turns]) < self.owned).all(axis=1)
+        for dofs in (moves[own], turns[own]):
+            values[dofs] = rotated(values[dofs], rotations[turns[own]])
 
     @property
     def _all_dofs(self) -> np.ndarray:

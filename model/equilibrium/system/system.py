@@ -145,7 +145,8 @@ class System:
         assert self._seats is not None
         rod, line = self.line.rod, self.line
         for station, arm in self._arms.items():
-            own = slice(0, SEAT_DOFS) if station == 0 else slice(SEAT_DOFS, 2 * SEAT_DOFS)
+            at_bottom = 2 * station < len(line.station_dofs)
+            own = slice(0, SEAT_DOFS) if at_bottom else slice(SEAT_DOFS, 2 * SEAT_DOFS)
             x, ψ = (line.at_station(values, station) for values in (rod.x, self._body_increments[rod.rotation_dofs]))
             R = line.at_station(self.state["R"].equilibrium, station)
             self._swings[station] = swing = Swing.of(ψ, R @ arm)

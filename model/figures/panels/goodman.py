@@ -11,7 +11,7 @@ def goodman(wire: str, permitted: Line, cycle: Cycle, residual: float | None) ->
     low = min(0.0, cycle.lower + (residual or 0.0))
     lower = np.array(sorted({low, 0.0, permitted.knee, permitted.limit}))
     upper = np.array([permitted.upper(x) for x in lower])
-    name = f"permitted, {permitted.times} cycles, {permitted.surface}"
+    name = f"permitted, {permitted.times} cycles, {permitted.surface}, {permitted.tested}"
     traces = [
         curve(lower, upper, GREY, width=2.5, name=name),
         curve([low, permitted.limit], [low, permitted.limit], GREY, dash="dot", width=1.5, name="at rest, τk2 = τk1"),

@@ -18,16 +18,17 @@ from collections import namedtuple
 import numpy as np
 from numba import njit
 
-from coilset.model.base.kernel import KERNEL
+from coilset.model.base.kernel import INLINE, KERNEL
 
 # The array of creep. TIME: the increment of t, or of t^p for time hardening; POWER: p, or 1; FORM: 0 power law, 1 sinh;
-# STRAIN, STRESS, EXPONENT: c₀, σ₀ in N/mm², N; TEMPERATURE: at the increment's end, K. ENERGY: Q/R in K where each
-# point has a temperature of its own, which stays during the increment, and TIME is hours, not yet scaled; else SCALED.
-# T0: of the constants, K.
-TIME, POWER, FORM, STRAIN, STRESS, EXPONENT, TEMPERATURE, ENERGY, T0 = range(9)
+# SPEED, STRESS, EXPONENT: c₀^(1/POWER), σ₀ in N/mm² and N/POWER of φ^(1/POWER); TEMPERATURE: at the increment's end, K.
+# ENERGY: Q/R in K where each point has a temperature of its own, which stays during the increment, and TIME is hours,
+# not yet scaled; else SCALED. T0: of the constants, K.
+TIME, POWER, FORM, SPEED, STRESS, EXPONENT, TEMPERATURE, ENERGY, T0 = range(9)
 SCALED = -1.0
 MAX_ITERATIONS = 60
 TOLERANCE = 1e-11  # of the creep strain's last correction, over the strain
+FINE = 1e-6  # of log χ; after a correction by Newton's method of this size the next one would be of its square
 MOST = 1e60  # χ c at the start, where the creep strain of the elastic stress is beyond all numbers
 
 
@@ -45,12 +46,11 @@ def rate(q: np.ndarray, stress: float) -> tuple[float, float]:
     x = stress / q[STRESS]
     if x <= 1e-12:
         return 0.0, 0.0
-    exponent = q[EXPONENT] / q[POWER]
     if q[FORM] == 0.0:
-        g = (q[STRAIN] ** (1.0 / q[POWER])) * x**exponent
-        return g, g * exponent / stress
-    g = (q[STRAIN] ** (1.0 / q[POWER])) * math.sinh(x) ** exponent
-    return g, g * exponent / (math.tanh(x) * q[STRESS])
+        g = q[SPEED] * x ** q[EXPONENT]
+        return g, g * q[EXPONENT] / stress
+    g = q[SPEED] * math.sinh(x) ** q[EXPONENT]
+    return g, g * q[EXPONENT] / (math.tanh(x) * q[STRESS])
 
 
 # Equivalent creep strain of a stage and its derivatives in σ, in u at its start and in the logarithm of its time; u at
@@ -61,6 +61,12 @@ Creep = namedtuple("Creep", "strain by_stress by_start by_time u u_by_stress u_b
 @njit(**KERNEL)
 def creep_strain(q: np.ndarray, sigma: float, u0: float, h: float) -> Creep:
     """u^p − u₀^p under the constant equivalent stress σ, u = u₀ + h φ^(1/p)."""
+    return _creep_strain(q, sigma, u0, u0 ** q[POWER] if u0 > 0.0 else 0.0, h)
+
+
+@njit(**INLINE)
+def _creep_strain(q: np.ndarray, sigma: float, u0: float, before: float, h: float) -> Creep:
+    """`creep_strain`, with u₀^p."""
     if h == 0.0:
         return Creep(0.0, 0.0, 0.0, 0.0, u0, 0.0, 0.0)
     g, slope = rate(q, sigma)
@@ -68,7 +74,6 @@ def creep_strain(q: np.ndarray, sigma: float, u0: float, h: float) -> Creep:
     u = u0 + grown
     if not grown > 0.0:
         return Creep(0.0, 0.0, 0.0, 0.0, u, 0.0, 0.0)
-    before = u0**power if u0 > 0.0 else 0.0
     # without the rounding of a difference, however little grows
     c = before * math.expm1(power * math.log1p(grown / u0)) if u0 > 0.0 else grown**power
     d_c = power * (before + c) / u
@@ -92,8 +97,8 @@ def crept(
         h: the step's time.
     """
     (first, other), (first_c, c) = squares, moduli
-    sigma = math.sqrt(first + other)
-    of = creep_strain(q, sigma, u0, h)
+    sigma, before = math.sqrt(first + other), u0 ** q[POWER] if u0 > 0.0 else 0.0
+    of = _creep_strain(q, sigma, u0, before, h)
     if not of.strain > 0.0:  # nothing
         return 0.0, 0 if of.strain == of.strain else -1
     chi, strain = min(1.5 * of.strain / sigma, MOST / c), 1.5 * sigma / first_c
@@ -102,11 +107,11 @@ def crept(
         a, b = 1.0 / (1.0 + first_c * chi), 1.0 / (1.0 + c * chi)
         sa, sb = first * a * a, other * b * b
         sigma = math.sqrt(sa + sb)
-        of = creep_strain(q, sigma, u0, h)
+        of = _creep_strain(q, sigma, u0, before, h)
         if of.strain > 0.0:
             falls = (first_c * chi * a * sa + c * chi * b * sb) / (sa + sb)  # −d log σ/d log χ
             step = math.log(1.5 * of.strain / (chi * sigma)) / (1.0 + (of.by_stress * sigma / of.strain - 1.0) * falls)
-            if abs(step) * chi * sigma <= TOLERANCE * (strain + of.strain) + 1e-16:
+            if abs(step) <= FINE or abs(step) * chi * sigma <= TOLERANCE * (strain + of.strain) + 1e-16:
                 return chi * (1.0 + step), iteration
         else:  # under so small a stress
             step = -math.inf

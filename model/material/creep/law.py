@@ -69,8 +69,9 @@ class CreepLaw:
             time, energy, power = float(end[WORTH] ** power - start[WORTH] ** power), energy * power, 1.0
         energy = energy if self.own else SCALED
         form = 0.0 if data.form == "norton_bailey" else 1.0
+        speed, exponent = data.strain ** (1.0 / power), data.exponent / power
         viscous = np.array(
-            [time, power, form, data.strain, data.stress, data.exponent, end[TEMPERATURE], energy, data.temperature]
+            [time, power, form, speed, data.stress, exponent, end[TEMPERATURE], energy, data.temperature]
         )
         hours, plastic = float(end[HOURS] - start[HOURS]), self._parts.plastic
         if self._rate and hours > 0.0:

@@ -63,7 +63,8 @@ def read_relaxation(path: str | Path, points: bool = False, per_force: float | N
         raise InputError(f"give one of the columns {' and '.join(kinds)}; the columns are {wanted}", "", table.path)
     fewest = FEWEST_POINTS if points else FEWEST
     if len(table.rows) < fewest:
-        raise InputError(f"has {len(table.rows)} readings; {fewest} are needed at least", "", table.path)
+        fewer = "" if points else f", or {FEWEST_POINTS} points by --points"
+        raise InputError(f"has {len(table.rows)} readings; {fewest} are needed at least{fewer}", "", table.path)
     temperature, loss, stress = (table.numbers(name) for name in ("temperature", "loss", given[0]))
     printed = points and "hours" not in table.names
     hours = np.full(len(loss), CATALOGUE_HOURS) if printed else table.numbers("hours")

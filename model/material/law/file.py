@@ -209,6 +209,11 @@ class Validity(Strict):
         float, Unit("N/mm²"), Field(gt=0, description="the largest b* for which the constants are valid, N/mm²")
     ]
     remark: Annotated[Text, Field(description="what else limits the validity of the constants")]
+    temperature: Annotated[
+        float | None,
+        Unit("K"),
+        Field(gt=0, description="the one at which yield and hardening were tested, if at others only moduli are known"),
+    ] = None
 
 
 class MaterialFile(Strict):

@@ -50,6 +50,7 @@ class Document:
         head: names and values of its head.
         basis: where the numbers are from.
         drawing: side view with dimensions.
+        body: the spring, as it is drawn.
         tables: headings with their lines.
         has_run: whether the tables have a column of a run.
         panels: diagrams.
@@ -61,6 +62,7 @@ class Document:
     head: list[tuple[str, str]]
     basis: str
     drawing: Drawing
+    body: Spring
     tables: list[tuple[str, list[Line]]]
     has_run: bool
     panels: list[Panel]
@@ -81,6 +83,7 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
     limits = {limit.name: limit for limit in case_limits(case, spring, sheet.elastic.shear_modulus)}
     head = [(words(name), value) for name, value in (case.sheet or SheetSpec()).model_dump().items()]
     norms = "EN 13906-2" if sheet.pulled else "EN 13906-3" if sheet.turns_to else "EN 13906-1, EN 15800"
+    shown = _shown(sheet, spring)
     without = f"Calculated by the formulas of {norms}, before a run"
     basis = f"Results of the run {run}, beside the formulas of {norms}" if run else without
     kind = "Extension spring" if sheet.pulled else "Torsion spring" if sheet.turns_to else "Compression spring"
@@ -98,7 +101,8 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
         words(kind),
         head,
         words(basis),
-        _view(sheet, spring, limits, words),
+        _view(sheet, shown, limits, words),
+        shown,
         [(title, lines) for title, lines in tables if lines],
         bool(run),
         [_translated(panel, words) for panel in _panels(sheet, limits)],
@@ -159,12 +163,21 @@ def _fatigue(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
         yield Line(words(f"safety, {entry['criterion']}"), "", words.number(entry["safety"], 3))
 
 
+def _free_length(sheet: Sheet) -> float:
+    """After the run, or as drawn; mm."""
+    return min(sheet.at_run("free_length_after_mm") or sheet.spring.length, sheet.spring.length)
+
+
+def _shown(sheet: Sheet, spring: Spring) -> Spring:
+    """The finished spring of a run, or the drawn one."""
+    s, free = sheet.spring, _free_length(sheet)
+    return spring.at_height(free) if s.solid < free < s.length and not sheet.pulled else spring
+
+
 def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Words) -> Drawing:
-    """The finished spring of a run, or the drawn one, with its dimensions and their tolerances."""
+    """The spring with its dimensions and their tolerances."""
     s, width = sheet.spring, spring.width * sheet.spring.d
-    after = sheet.at_run("free_length_after_mm") or s.length
-    free = min(after, s.length)
-    shown = spring.at_height(free) if s.solid < free < s.length and not sheet.pulled else spring
+    free = _free_length(sheet)
     compressed = not (sheet.pulled or sheet.turns_to)  # EN 15800 is for compression springs
     covered = compressed and s.wire is None and en15800.outside(s.d, s.D, s.n, s.length) is None
     shear = sheet.elastic.shear_modulus
@@ -186,6 +199,7 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
         text = about(abs(force) if sheet.pulled else force, number_name("force", length), spread)
         levels.append(Level(length, f"L{k} = {number(length)}   F{k} = {text} N"))
     if compressed:
+        levels.append(Level(sheet.smallest, f"Ln = {number(sheet.smallest)}"))
         levels.append(Level(sheet.shortest, f"Lc = {number(sheet.shortest)}"))
     mean = about(s.D, "", given.coil_diameter if given else None)
     widths = [
@@ -195,7 +209,11 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
     ]
     tolerance = sheet.tolerance_of_wire
     wire = number(s.d) if s.wire is None else f"{number(s.wire.width)} × {number(s.d)}"
-    return view(shown, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""))
+    notes = [words("coiled right-hand" if spring.hand > 0 else "coiled left-hand")]
+    if given:
+        notes.append(f"e1 ≤ {number(given.lean, 3)}")
+        notes += [f"e2 ≤ {number(given.parallelism, 3)}"] if s.ends == "closed and ground" else []
+    return view(spring, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""), notes)
 
 
 def _panels(sheet: Sheet, limits: Mapping[str, Limit]) -> Iterator[Panel]:

@@ -7,7 +7,7 @@ from coilset.model.report.document.view import LETTERS, Drawing
 
 COLOURS = {"OUTLINE": 7, "AXIS": 1, "DIMENSION": 5}  # of AutoCAD's index
 ENCODING = "cp1252"  # of DWGCODEPAGE
-SIGNS = {"±": "%%p", "°": "%%d", "Ø": "%%c", "−": "-", "…": "..."}
+SIGNS = {"±": "%%p", "°": "%%d", "Ø": "%%c", "−": "-", "…": "...", "≤": "<="}
 
 
 def dxf(drawing: Drawing) -> bytes:

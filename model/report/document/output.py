@@ -1,4 +1,4 @@
-"""Writes the data sheet as a page, a PDF, a table or a drawing, whichever the name of the file says."""
+"""Writes the data sheet as a page, a PDF, a table, a drawing or a solid body, whichever the name of the file says."""
 
 import csv
 import io
@@ -73,9 +73,16 @@ def _csv(made: Document) -> bytes:
     return file.getvalue().encode("utf-8-sig")
 
 
+def _step(made: Document) -> bytes:
+    from coilset.meshes.step import step  # gmsh
+
+    return step(made.body)[0]
+
+
 WRITERS: dict[str, Callable[[Document], bytes]] = {
     ".html": _html,
     ".pdf": _pdf,
     ".csv": _csv,
     ".dxf": lambda made: dxf(made.drawing),
+    ".step": _step,
 }

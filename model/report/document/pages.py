@@ -103,17 +103,26 @@ def _columns(axes: Axes, items: Sequence[Item], top: float, made: Document) -> l
     for left in (MARGIN, MARGIN + COLUMN + 6.0):
         y = top
         while rest and y > MARGIN + 2.0 * PITCH:
-            title, line = rest.pop(0)
-            if line is None and y - 3.0 * PITCH < MARGIN:  # no heading at the foot
-                rest.insert(0, (title, line))
+            if y < top and y - _group(rest) * PITCH < MARGIN:
                 break
+            title, line = rest.pop(0)
             y -= PITCH * (1.0 if line else 1.4)
             _row(axes, left, y, title, line, made)
     return rest
 
 
+def _group(items: Sequence[Item]) -> float:
+    """Height of what remains together at a column's foot, in lines: a heading with a line, a line with its parts."""
+    if items[0][1] is None:
+        return 1.4 + (_group(items[1:]) if len(items) > 1 else 0.0)
+    parts = 1
+    while parts < len(items) and (line := items[parts][1]) is not None and line.label.startswith(" "):
+        parts += 1
+    return float(parts)
+
+
 def _row(axes: Axes, left: float, y: float, title: str, line: Line | None, made: Document) -> None:
-    ends = left + COLUMN * 0.69, left + COLUMN * 0.85
+    ends = left + COLUMN * (0.69 if made.has_run else 0.85), left + COLUMN * 0.85
     if line is None:
         axes.text(left, y, title, fontsize=SMALL + 0.6, weight="bold")
         for x, text in zip(ends, (made.words("formula"), made.words("run")), strict=True) if made.has_run else ():
@@ -121,7 +130,7 @@ def _row(axes: Axes, left: float, y: float, title: str, line: Line | None, made:
         axes.plot([left, left + COLUMN], [y - 0.9] * 2, color="0.3", lw=0.5)
         return
     axes.text(left + 0.8 * (len(line.label) - len(line.label.lstrip())), y, line.label.strip(), fontsize=SMALL)
-    alone = not line.unit and not line.found and len(line.value) > 8  # a word, which takes the units' room too
+    alone = not line.unit and not line.found and line.value[:1].isalpha()  # a word, which takes the units' room too
     if alone:
         axes.text(left + COLUMN, y, line.value, fontsize=SMALL, ha="right")
     else:

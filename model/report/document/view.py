@@ -67,14 +67,21 @@ class Level:
     text: str
 
 
-def view(spring: Spring, levels: Sequence[Level], widths: Sequence[tuple[float, str]], wire: str) -> Drawing:
-    """The side view: lengths with forces on the right, diameters below, the wire on the left.
+def view(
+    spring: Spring,
+    levels: Sequence[Level],
+    widths: Sequence[tuple[float, str]],
+    wire: str,
+    notes: Sequence[str] = (),
+) -> Drawing:
+    """The side view: lengths with forces on the right, diameters below, the wire and notes on the left.
 
     Args:
         spring: as it is drawn.
         levels: lengths, the free one among them.
         widths: diameters with their texts, smallest first.
         wire: text of the wire's diameter.
+        notes: lines of text.
     """
     t = spring.breaks
     reach = float(np.max(spring.mean_radius(t) + 0.5 * spring.width * spring.wire_diameter(t)))
@@ -94,7 +101,10 @@ def view(spring: Spring, levels: Sequence[Level], widths: Sequence[tuple[float, 
     left = min(np.linspace(middle - 0.5, middle + 0.5, 65), key=lambda turn: spring.centre_line(turn)[0])
     x, _, z = spring.centre_line(left)
     made.line((x, z), (-reach - 6.0 * u, z + 5.0 * u), (-reach - 8.0 * u, z + 5.0 * u))
-    made.texts.append(Text(wire, -reach - 9.0 * u - 0.62 * LETTERS * u * len(wire), z + 4.0 * u))
+    start = -reach - 9.0 * u - 0.62 * LETTERS * u * max(map(len, (wire, *notes)))
+    made.line((-reach - 8.0 * u, z + 5.0 * u), (start, z + 5.0 * u))
+    made.texts.append(Text(wire, start, z + 5.8 * u))
+    made.texts += [Text(note, start, length - (2.4 + ROW * row) * u) for row, note in enumerate(notes)]
     return made
 
 

@@ -19,6 +19,7 @@ DERIVED = (
     "fields/*.pvd",
     "fields/*.vtkhdf",
     "modes/*",
+    "surge/*",
     "characteristic.png",
     "springs.png",
     "cross_section.png",

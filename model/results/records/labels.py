@@ -42,7 +42,13 @@ def within(value: float | None, error: float | None, unit: str, digits: int) -> 
 
 NUMBERS = {"force_N": "force", "set_mm": "set", "residual_shear_inside_MPa": "residual stress"}
 """Numbers whose errors are estimated, in words."""
-CAUSES = {"steps": "steps", "mesh": "mesh", "section": "section points", "contact": "contact"}
+CAUSES = {
+    "steps": "steps",
+    "mesh": "mesh",
+    "section": "section points",
+    "contact": "contact",
+    "warping": "elastic warping",
+}
 """Causes of these errors, in words."""
 
 
@@ -54,7 +60,7 @@ def largest_errors(errors: Mapping[str, Mapping[str, float | None]] | None) -> s
     """
     found: dict[str, list[str]] = {}
     for number, word in NUMBERS.items() if errors else ():
-        parts = {cause: (errors or {})[cause][number] or 0.0 for cause in CAUSES}
+        parts = {cause: (errors or {}).get(cause, {}).get(number) or 0.0 for cause in CAUSES}
         largest = max(parts, key=lambda cause: parts[cause])
         if parts[largest]:
             found.setdefault(CAUSES[largest], []).append(word)

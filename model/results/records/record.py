@@ -126,12 +126,15 @@ class ForceLine:
     Attributes:
         lower, upper: heights of two planes above the bottom seat of the unloaded spring, mm; None: not requested.
         point, direction: of the damper's axis, mm, in the spring's coordinates; the direction of any length.
+        guides, friction: places of two guides along the axis from the point, mm, and their coefficient of friction.
     """
 
     lower: float | None
     upper: float | None
     point: tuple[float, ...]
     direction: tuple[float, ...]
+    guides: tuple[float, ...] = ()
+    friction: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -189,6 +192,9 @@ class SeatReactions:
             the top head's force, crosses the two planes of the ForceLine; not numbers without one, or without a force.
         damper_moment_Nmm, damper_torque_Nmm: moment of the top head's reaction on the body above it, about the point of
             the damper: its size across the damper's axis, and its part about it.
+        damper_friction_N: friction of the damper's rod by that force alone; not a number without guides.
+        imbalance_N, imbalance_Nmm: size of the sum of all forces on the wire, and of their moments about the origin:
+            of both ends, of arbor and sleeve, and of the coils on each other.
         bottom, top: SeatReactions of the ends.
         pressure: one row for each point of the wire in contact: number of the kind of contact, number of the point,
             force per length of wire in N/mm; shape (m, 3). Between coils it is twice the point's own force,
@@ -205,6 +211,9 @@ class SeatReactions:
     line_upper_y_mm: float
     damper_moment_Nmm: float
     damper_torque_Nmm: float
+    damper_friction_N: float
+    imbalance_N: float
+    imbalance_Nmm: float
     bottom: SeatReaction
     top: SeatReaction
     pressure: np.ndarray
@@ -379,13 +388,15 @@ class RunErrors:
 
     Attributes:
         steps: the length of the steps; mesh: that of the elements; section: the points of the sections; contact: the
-            stiffness of seats and coils against penetration.
+            stiffness of seats and coils against penetration; warping: that of sections that are not round, kept
+            elastic.
     """
 
     steps: Errors
     mesh: Errors
     section: Errors
     contact: Errors
+    warping: Errors
 
     @cached_property
     def total(self) -> Errors:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from coilset.model.rod.rod import Rod
 from coilset.model.rotations.kernels import exponential
 
 ROUNDING = 2e-13  # axial forces below this part of E A are rounding, whatever came before
+ON_LINE = tuple(item.name for item in fields(SeatReactions) if item.name.startswith(("line_", "damper_")))
 FAINT = 1e-6  # axial forces below this part of the largest one so far have no centre and load no turns
 
 
@@ -62,11 +64,14 @@ def seat_reactions(
     active = active_turns(rod, turns, *change) if min(abs(force), abs(change[0])) > faint else np.nan
     side = math.hypot(top.lateral_x_N, top.lateral_y_N)
     free = free_turns(observer.on_wire, pressure)
-    return SeatReactions(step, active, free, side, *on_line(wrenches["top"], line, faint), bottom, top, pressure)
+    whole = observer.others() + wrenches["bottom"] + wrenches["top"]
+    numbers = dict(zip(ON_LINE, on_line(wrenches["top"], line, faint), strict=True))
+    numbers["imbalance_N"], numbers["imbalance_Nmm"] = map(float, map(np.linalg.norm, (whole.force, whole.moment)))
+    return SeatReactions(step, active, free, side, **numbers, bottom=bottom, top=top, pressure=pressure)
 
 
-def on_line(wrench: Wrench, line: ForceLine | None, faint: float) -> tuple[float, float, float, float, float, float]:
-    """Where the line of a force crosses two planes, x and y of each, mm, and its moments for a damper, N mm.
+def on_line(wrench: Wrench, line: ForceLine | None, faint: float) -> tuple[float, ...]:
+    """Where the line of a force crosses two planes, x and y of each, mm, its moments for a damper, N mm, and friction.
 
     Args:
         wrench: of the top head on the spring; its opposite acts on the body above.
@@ -74,7 +79,7 @@ def on_line(wrench: Wrench, line: ForceLine | None, faint: float) -> tuple[float
         faint: force that counts as none, N.
     """
     if line is None:
-        return (math.nan,) * 6
+        return (math.nan,) * 7
     lower, upper = (
         (math.nan, math.nan)
         if height is None or abs(wrench.force[2]) <= faint
@@ -84,7 +89,24 @@ def on_line(wrench: Wrench, line: ForceLine | None, faint: float) -> tuple[float
     moment = -wrench.about(np.array(line.point)).moment
     axis = np.array(line.direction) / np.linalg.norm(line.direction)
     about = float(moment @ axis)
-    return *lower, *upper, float(np.linalg.norm(moment - about * axis)), about
+    across = moment - about * axis
+    return *lower, *upper, float(np.linalg.norm(across)), about, _friction(-wrench.force, across, axis, line)
+
+
+def _friction(force: np.ndarray, moment: np.ndarray, axis: np.ndarray, line: ForceLine) -> float:
+    """μ (|R1| + |R2|), N: reactions of two guides at a and b on the rod, R1 + R2 = −S, a e × R1 + b e × R2 = −M.
+
+    Args:
+        force, moment: F and M on the rod about the damper's point, M across the axis, shape (3,), N and N mm.
+        axis: e, unit vector; S is what of F is across it.
+        line: ForceLine.
+    """
+    if not line.guides:
+        return math.nan
+    a, b = line.guides
+    side = force - (force @ axis) * axis
+    second = np.cross(axis, moment - a * np.cross(axis, side)) / (b - a)
+    return line.friction * float(np.linalg.norm(side + second) + np.linalg.norm(second))
 
 
 def faint_force(rod: Rod, greatest_force: float) -> float:
@@ -108,6 +130,11 @@ class _Observer:
         own = [part for contact, part in self.parts if contact.end == end]
         station, _ = self.control.tips[end]
         return Wrench.of_contacts(own, self.x, self.chart, station, self.control.on_tip(end))
+
+    def others(self) -> Wrench:
+        """Resultant of all contacts that are no end's: of arbor, sleeve, and coils on each other, which is none."""
+        others = [part for contact, part in self.parts if contact.end not in ENDS]
+        return Wrench.of_contacts(others, self.x, self.chart, 0, np.zeros(6))
 
     def reaction(self, end: str, whole: Wrench, faint: float) -> SeatReaction:
         """The SeatReaction of an end, from its `wrench`."""

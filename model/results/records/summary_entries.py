@@ -153,8 +153,8 @@ class Summary:
     plastic_work_known_to_N_per_mm2: float = entry("N/mm²", "limit up to which the constants of the material are valid")
     estimated_force_error_N: float | None = entry(
         "N",
-        "estimated size of the error of the maximum force by steps, mesh, section rule and contact together; `null` "
-        "where one of them is not known, and with `accuracy: none`",
+        "estimated size of the error of the maximum force by steps, mesh, section rule, contact and warping together; "
+        "`null` where one of them is not known, and with `accuracy: none`",
         of_slice=False,
     )
     estimated_set_error_mm: float | None = entry("mm", "the same of the set", of_slice=False)
@@ -163,8 +163,8 @@ class Summary:
     )
     estimated_errors: RunErrors | None = entry(  # noqa: RUF009 - it is frozen
         "",
-        "the parts of these by their causes `steps`, `mesh`, `section` and `contact`: each has `force_N`, `set_mm` and "
-        "`residual_shear_inside_MPa`; `null` where not estimated",
+        "the parts of these by their causes `steps`, `mesh`, `section`, `contact` and `warping`: each has `force_N`, "
+        "`set_mm` and `residual_shear_inside_MPa`; `null` where not estimated",
         of_slice=False,
     )
     working: tuple[dict[str, Any], ...] = entry(

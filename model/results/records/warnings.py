@@ -254,11 +254,13 @@ def _creep(setup: Setup, result: Result) -> Iterator[Warning]:
             yield Warning("creep", name, message, value, most, unit)
 
 
+ITSELF = "and coilset solve runs again by itself where the case leaves that out and it suffices"
 MORE = {
-    "mesh": "more mesh.elements_per_turn reduce it",
-    "section": "more points, mesh.section.radial and angular, reduce it",
-    "contact": "a greater contact.bedding reduces it",
-    "steps": "a smaller accuracy or more steps reduce it",
+    "mesh": f"more mesh.elements_per_turn reduce it, {ITSELF}",
+    "section": f"more points, mesh.section.radial and angular, reduce it, {ITSELF}",
+    "contact": f"a greater contact.bedding reduces it, {ITSELF}",
+    "warping": "mesh.section: {kind: warping, degree: 5} has none, in rectangles with degree: 7 and radial: 16",
+    "steps": f"a smaller accuracy or more steps reduce it, {ITSELF}",
 }
 """What makes an error smaller, by its cause."""
 
@@ -293,8 +295,8 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
         error = getattr(errors.total, name)
         if error is None:
             message = (
-                f"the error of the {NUMBERS[name]} by mesh, section points and contact could not be estimated; compare "
-                "with a run of more mesh.elements_per_turn"
+                f"the error of the {NUMBERS[name]} by mesh, section points, contact and warping could not be "
+                "estimated; compare with a run of more mesh.elements_per_turn"
             )
             yield Warning("unknown error", "mesh", message, None, asked)
             return
@@ -308,8 +310,7 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
         cause = errors.largest(largest)
         message = (
             f"the estimated error is {' and '.join(words)}, mostly because of the {CAUSES[cause]}, more than the "
-            f"case's accuracy of {100 * asked:.2g} % allows; {MORE[cause]}, and coilset solve runs again by itself "
-            "where the case leaves that out and it suffices"
+            f"case's accuracy of {100 * asked:.2g} % allows; {MORE[cause]}"
         )
         yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], asked)
 

@@ -166,6 +166,12 @@ class Strength(Sourced):
 
 
 Surface = Literal["as coiled", "shot peened"]
+Springs = Literal["preset", "not preset", "not stated"]
+TESTED: dict[Springs, str] = {
+    "preset": "preset springs",
+    "not preset": "springs not preset",
+    "not stated": "presetting not stated",
+}
 
 
 class Endurance(Sourced):
@@ -175,6 +181,7 @@ class Endurance(Sourced):
     """
 
     surface: Surface
+    springs: Springs = "not stated"  # tested; what presetting gains is in a line of preset ones
     cycles: Positive
     at_zero: Pair
     knee: Pair

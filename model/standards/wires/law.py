@@ -92,6 +92,18 @@ def _softened(wire: Wire, temperature: float) -> float:
     return 1.0 - slope.value * (temperature - ROOM_TEMPERATURE)
 
 
+def hottest(name: str, temperature: float) -> tuple[float, float] | None:
+    """The highest temperature, K, at which G of a wire is known, and G there over that at `temperature`; else None.
+
+    Raises:
+        InputError: an unknown wire.
+    """
+    known, hot = wire(name), SLOPE_RANGE[1]
+    if known.entry.shear_modulus_decrease is None or not SLOPE_RANGE[0] <= temperature < hot:
+        return None
+    return hot, _softened(known, hot) / _softened(known, temperature)
+
+
 def case_law(case: Case, spring: Spring) -> Law:
     """The law of a case's material: from the library, from a file, or of a wire by its name and the spring's wire.
 

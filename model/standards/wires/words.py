@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from coilset.model.standards.wires.file import (
+    TESTED,
     Endurance,
     Logarithm,
     Number,
@@ -99,7 +100,7 @@ def _number(entry: Sourced) -> str:
         case Endurance():
             points = {"0": entry.at_zero, _lg(entry.knee): entry.limit}
             cycle = ", ".join(f"{_lg(upper)} over {lower}" for lower, upper in points.items())
-            return f"{entry.cycles:g} times: upper stress {cycle}"
+            return f"{entry.cycles:g} times, {TESTED[entry.springs]}: upper stress {cycle}"
     raise TypeError(type(entry))
 
 

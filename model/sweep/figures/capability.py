@@ -7,6 +7,7 @@ for rods by control variates, and so is the share outside. Intervals of 95 %: th
 χ², Cpk by Bissell (1990), Cpk ± z √(1/(9 n) + Cpk²/(2 n − 2)); with control variates their own of m and s.
 """
 
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -19,7 +20,6 @@ from coilset.model.results.limits import Limit, case_limits
 from coilset.model.results.records.units import quantity
 from coilset.model.standards.wires.law import case_elastic, case_law
 from coilset.model.sweep.multifidelity import LEVEL, ControlVariate, slope
-from coilset.model.sweep.plan import Plan
 
 ENOUGH = 8  # cases
 WANTED = 1.33  # Cpk that is usual in production
@@ -49,6 +49,19 @@ class Capability:
     by: str
 
     @property
+    def row(self) -> dict[str, str]:
+        """Its numbers with their intervals, as texts."""
+        (out, (low, high)), (cp, cps), (cpk, cpks) = self.outside, self.cp, self.cpk
+        words, unit = quantity(self.limit.name)
+        return {
+            "result": words,
+            "limits": f"{self.limit.low:.5g} to {self.limit.high:.5g} {unit}".rstrip(),
+            "outside": f"{100 * out:.2g} % ({100 * low:.2g} to {100 * high:.2g})",
+            "Cp": f"{cp:.2f} ({cps[0]:.2f} to {cps[1]:.2f})",
+            "Cpk": f"{cpk:.2f} ({cpks[0]:.2f} to {cpks[1]:.2f})",
+        }
+
+    @property
     def advice(self) -> str:
         """Which input to tighten, and by how much, for the wanted Cpk."""
         if self.cpk[0] >= WANTED:
@@ -68,21 +81,22 @@ class Capability:
         return f"{name} has {share:.0%} of the variance, which is not enough for {WANTED:g} alone{more}"
 
 
-def limits_of(plan: Plan) -> tuple[Limit, ...]:
+def limits_of(data: xr.Dataset) -> tuple[Limit, ...]:
     """The limits of a sweep's base case; raises InputError."""
-    case: Case = check(plan.base, plan.case_path)
-    if not case.limits:
+    base = json.loads(data.attrs.get("base", "{}"))
+    if not base.get("limits"):
         return ()
+    case: Case = check(base)
     spring = case.spring.build()
     return case_limits(case, spring, case_elastic(case, case_law(case, spring)).shear_modulus)
 
 
-def capabilities(plan: Plan, data: xr.Dataset) -> list[Capability]:
-    """That of each limited result that enough cases have."""
-    return [found for limit in limits_of(plan) if (found := _capability(plan, data, limit)) is not None]
+def capabilities(data: xr.Dataset) -> list[Capability]:
+    """That of each limited result that enough cases have, from the data set of a sweep; raises InputError."""
+    return [found for limit in limits_of(data) if (found := _capability(data, limit)) is not None]
 
 
-def _capability(plan: Plan, data: xr.Dataset, limit: Limit) -> Capability | None:
+def _capability(data: xr.Dataset, limit: Limit) -> Capability | None:
     if limit.name not in data:
         return None
     values = data[limit.name].values
@@ -91,10 +105,10 @@ def _capability(plan: Plan, data: xr.Dataset, limit: Limit) -> Capability | None
         return None
     rod = data[f"rod_{limit.name}"].values if f"rod_{limit.name}" in data else np.full(len(values), np.nan)
     both = known & np.isfinite(rod)
-    parts = _parts(plan, data, values, known)
+    parts = _parts(data, values, known)
     if both.sum() >= ENOUGH:
         return _controlled(limit, rod[both], values[both], values[known], parts)
-    return _plain(limit, values[known], parts, "uniform rods" if plan.spec.model == "uniform_rod" else "rods")
+    return _plain(limit, values[known], parts, "uniform rods" if data.attrs.get("model") == "uniform_rod" else "rods")
 
 
 def _plain(limit: Limit, values: np.ndarray, parts: Sequence[tuple[str, float]], by: str) -> Capability:
@@ -154,9 +168,10 @@ def _indices(limit: Limit, mean: float, s: float) -> tuple[float, float]:
     return (limit.high - limit.low) / (6.0 * s), min(limit.high - mean, mean - limit.low) / (3.0 * s)
 
 
-def _parts(plan: Plan, data: xr.Dataset, values: np.ndarray, known: np.ndarray) -> list[tuple[str, float]]:
+def _parts(data: xr.Dataset, values: np.ndarray, known: np.ndarray) -> list[tuple[str, float]]:
     """Shares of the variance by a linear fit over independent inputs."""
-    names = [name for name in plan.names if data[name].dtype.kind == "f" and np.ptp(data[name].values[known])]
+    inputs = np.atleast_1d(data.attrs["inputs"]).tolist()
+    names = [name for name in inputs if data[name].dtype.kind == "f" and np.ptp(data[name].values[known])]
     if len(names) + 2 > known.sum():
         return []
     x = np.stack([stats.zscore(data[name].values[known]) for name in names], axis=1)
@@ -169,11 +184,7 @@ def _parts(plan: Plan, data: xr.Dataset, values: np.ndarray, known: np.ndarray) 
 def lines(found: Sequence[Capability]) -> Iterator[str]:
     """For people, two lines for each limited result."""
     for one in found:
-        words, unit = quantity(one.limit.name)
-        (out, (low, high)), (cp, cps), (cpk, cpks) = one.outside, one.cp, one.cpk
-        yield (
-            f"{words}, {one.limit.low:.5g} to {one.limit.high:.5g} {unit}: {100 * out:.2g} % outside "
-            f"({100 * low:.2g} to {100 * high:.2g}), Cp {cp:.2f} ({cps[0]:.2f} to {cps[1]:.2f}), "
-            f"Cpk {cpk:.2f} ({cpks[0]:.2f} to {cpks[1]:.2f}); from {one.by}"
-        )
+        row = one.row
+        shares = f"outside {row['outside']}, Cp {row['Cp']}, Cpk {row['Cpk']}"
+        yield f"{row['result']}, {row['limits']}: {shares}; from {one.by}"
         yield f"  {one.advice}"

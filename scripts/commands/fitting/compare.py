@@ -22,7 +22,7 @@ def compare(folder: str, out: str | None, force: bool) -> None:
     target = results_folder(out, name, "compare")
     found = run_and_compare(folder, target, force)
     rows = found.rows
-    table = Table("quantity", "measured", "±", "computed", "±", "measured/computed", "", box=None, padding=(0, 2))
+    table = Table("quantity", "measured", "±", "computed", "±", "ratio", "", box=None, padding=(0, 1))
     for row in rows:
         error = "–" if row.computed_error != row.computed_error else f"{row.computed_error:.2g}"
         numbers = (f"{row.measured:.5g}", f"{row.error:.3g}", f"{row.computed:.5g}", error, f"{row.ratio:.4f}")

@@ -13,7 +13,7 @@ from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target
 
 if TYPE_CHECKING:
-    from coilset.model.calibration.pressing import Pressing
+    from coilset.model.spring_fit.pressing import Pressing
 
 FLAG, NAME = "--spring", "fit-springs"
 DATA = typer.Argument(
@@ -48,10 +48,10 @@ def fit_springs(
     """Identify yield, hardening and G of a wire from springs that are pressed and released; also `fit --spring`."""
     from rich.table import Table
 
-    from coilset.model.calibration.figure import figure
-    from coilset.model.calibration.fit import fit_springs as fit
-    from coilset.model.calibration.model import TESTER, Errors
-    from coilset.model.calibration.next_press import next_press, words
+    from coilset.model.spring_fit.figure import figure
+    from coilset.model.spring_fit.fit import fit_springs as fit
+    from coilset.model.spring_fit.model import TESTER, Errors
+    from coilset.model.spring_fit.next_press import next_press, words
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
@@ -94,8 +94,8 @@ def _known(texts: list[str]) -> dict[str, float]:
 
 def _read(paths: list[str]) -> "list[Pressing]":
     """The presses of the files, each with the case that follows it."""
-    from coilset.model.calibration.pressing import read_pressing
     from coilset.model.case import read_case
+    from coilset.model.spring_fit.pressing import read_pressing
 
     found = []
     for path, case in with_cases(paths):

@@ -12,7 +12,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
-from coilset.model.material import library, points
+from coilset.model.material import library
+from coilset.model.material.point import points
 from coilset.verification.references import heun
 from coilset.verification.study import Study
 

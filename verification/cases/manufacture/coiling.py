@@ -26,7 +26,7 @@ from coilset.model.base.style import STYLE
 from coilset.model.case.case import Case, check
 from coilset.model.manufacture.coiling import coil
 from coilset.model.material import library
-from coilset.model.material.points import initial_state
+from coilset.model.material.point.points import initial_state
 from coilset.model.results.records.record import Snapshot
 from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import polar

@@ -26,7 +26,7 @@ from coilset.model.base.style import STYLE
 from coilset.model.case.case import Case, check
 from coilset.model.manufacture.peening import Layer, peen
 from coilset.model.material import library
-from coilset.model.material.points import initial_state
+from coilset.model.material.point.points import initial_state
 from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import polar
 from coilset.verification.study import Study

@@ -20,8 +20,9 @@ from mpi4py import MPI
 from coilset.model.base.style import STYLE
 from coilset.model.case import read_case
 from coilset.model.case.case import ANGLES, SectionSpec
-from coilset.model.material import library, points
+from coilset.model.material import library
 from coilset.model.material.law.law import Law
+from coilset.model.material.point import points
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES

@@ -20,11 +20,11 @@ from matplotlib.figure import Figure
 
 from coilset.model.base.errors import SolveError
 from coilset.model.base.style import STYLE
-from coilset.model.calibration import rods
-from coilset.model.calibration.fit import SpringFit, fit_springs
-from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
-from coilset.model.calibration.pressing import Pressing
 from coilset.model.case import Case, check
+from coilset.model.spring_fit import rods
+from coilset.model.spring_fit.fit import SpringFit, fit_springs
+from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
+from coilset.model.spring_fit.pressing import Pressing
 from coilset.verification.study import Study
 
 FAST = False

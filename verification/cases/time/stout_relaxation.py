@@ -78,7 +78,7 @@ def rod(case: PressedSection, file: str, kind: str, turns: float = 1.0) -> Held:
         {"hold": {"hours": float(HOURS[-1])}, "steps": [float(mark) for mark in marks]},
     ]
     spring = {"wire_diameter": WIRE, "mean_diameter": case.mean_diameter, "turns": turns, "pitch": case.pitch}
-    mesh = {"elements_per_turn": 24, "section": {"kind": kind, "radial": 8, "angular": 12}}
+    mesh = {"elements_per_turn": 24, "section": {"kind": kind, "radial": 12, "angular": 24}}
     entries = {"spring": spring, "material": file, "ends": "clamped", "mesh": mesh, "loading": loading}
     model: Case = check(entries)
     steps = Analysis(model, MPI.COMM_SELF).run().steps

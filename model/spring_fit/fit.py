@@ -15,20 +15,24 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.calibration import rods
-from coilset.model.calibration.intervals import Interval, correlation, intervals, minimum
-from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
-from coilset.model.calibration.model import TESTER, Errors, Model, names
-from coilset.model.calibration.pressing import Pressing
-from coilset.model.standards.wires.law import case_law
+from coilset.model.spring_fit import rods
+from coilset.model.spring_fit.intervals import Interval, correlation, intervals, minimum
+from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
+from coilset.model.spring_fit.model import TESTER, Errors, Model, names
+from coilset.model.spring_fit.pressing import Pressing
+from coilset.model.standards.wires.law import case_law, hottest
 from coilset.model.uniform.equivalent import coil
 
-ROUNDS = 8
+ROUNDS = 10
 SETTLED = 0.2  # squared standard deviations by which the last search, or the last whole rods, may have come nearer
 STARTS = {"yield_stress": (0.3, 0.55, 0.8), "rise": (0.15, 0.6), "rate": (60.0, 300.0, 1200.0)}
 SHARE = 0.2  # to begin with: little flows backwards
-SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides, in each round
+SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides, at first and at the end
 CORRELATED = 0.4  # of residuals that follow each other, from which on they are no scatter
+POSSIBLE = {
+    **dict.fromkeys(("G", "yield_stress", "rise", "rate", "compliance"), (0.0, math.inf)),
+    **dict.fromkeys(("share", "friction"), (0.0, 1.0)),
+}
 UNLIKE = "the law does not follow the readings"
 TESTED = Errors()
 MISFIT = 1.5  # residuals over the tester's errors, from which on the law does not follow the readings
@@ -89,13 +93,25 @@ class SpringFit:
         runs = (rods.steps(one, trial, model.ends(self.x, k)) for k, one in enumerate(model.pressings))
         work = max(step.plastic_work_max_N_per_mm2 for run in runs for step in run)
         files = ", ".join(one.name for one in model.pressings)
+        temperature, case = model.form.temperature, model.pressings[0].case
+        hot = None if isinstance(case.material, str) else hottest(case.material.wire, temperature)
+        more = [f"G at {hot[0]:g} K by the slope of {case.material.wire}"] if hot else []  # type: ignore[union-attr]
         about = {
             "name": name,
             "description": f"Constants identified from presses of springs ({model.form.name})",
             "source": f"coilset material fit --spring: {files}",
-            "validity": {"plastic_work": float(f"{max(work, 1.0):.3g}"), "remark": "; ".join(self.sentences)},
+            "validity": {
+                "plastic_work": math.ceil(100.0 * max(work, 1.0)) / 100.0,
+                "remark": "; ".join([*self.sentences, *more]),
+                "temperature": temperature,
+            },
         }
-        return model.form.material(self.values, about)
+        found = model.form.material(self.values, about)
+        if hot:
+            at = found["temperatures"][0]
+            elastic = at["elasticity"] | {"G": hot[1] * at["elasticity"]["G"]}
+            found["temperatures"].append(at | {"temperature": hot[0], "elasticity": elastic})
+        return found
 
     @property
     def misfit(self) -> str:
@@ -131,9 +147,7 @@ def fit_springs(
         SolveError: if no constants are found with which the springs can be pressed so.
     """
     known = dict(known or {})
-    for name in (*known, *tester):
-        if name not in (*CONSTANTS, *TESTER):
-            raise InputError(f"'{name}' is none of {', '.join((*CONSTANTS, *TESTER))}", "--known")
+    _check(known, tester)
     law = case_law(pressings[0].case, pressings[0].spring)
     temperature = pressings[0].case.temperature or law.reference_temperature
     shape = Form(form, law.nu, temperature)
@@ -163,8 +177,22 @@ def fit_springs(
     )
 
 
+def _check(known: Mapping[str, float], tester: Sequence[str]) -> None:
+    """Refuse names that are none, and values that nothing can have."""
+    for option, given, possible in (("--known", known, (*CONSTANTS, *TESTER)), ("--tester", tester, TESTER)):
+        for name in given:
+            if name not in possible:
+                raise InputError(f"'{name}' is none of {', '.join(possible)}", option)
+    for name, value in known.items():
+        low, high = POSSIBLE.get(name, (-math.inf, math.inf))
+        if not low <= value <= high or (value == 0.0 and name in ("G", "yield_stress", "rate")):
+            raise InputError(f"{name} must be {f'from 0 to {high:g}' if high == 1.0 else 'positive'}", "--known")
+
+
 def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np.ndarray, OptimizeResult, int]:
     """Whole rods and search in turn, until the constants stay; with the number of rounds.
+
+    Whole rods of all shares are run where it begins and ends; in between, one of the present constants shifts them.
 
     Args:
         model, x: unknowns to begin with.
@@ -173,21 +201,24 @@ def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np
     Raises:
         SolveError: if the constants do not come to rest.
     """
-    shares, nearest = list(SHARES), math.inf
+    nearest, settled = {True: math.inf, False: math.inf}, False
     for number in range(1, ROUNDS + 1):
-        if model.share is not None and not held:
-            x = minimum(model, x)[0] if number == 1 and len(model.missing) > 1 else x
-            shares.append(float(x[model.share]))
-            model = model.with_shares(x, shares)
-        else:
+        all_shares = settled or len(model.missing) == 1
+        if model.share is None or held:
             model = model.corrected(x, slopes=number == 2)
+        elif all_shares:
+            model = model.with_shares(x, (*SHARES, float(x[model.share])))
+        else:
+            x = minimum(model, x)[0] if number == 1 else x
+            model = model.shifted(x)
         before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x, held)
         small = SETTLED * max(_scatter(model, found), 1.0) ** 2
-        if (number > 2 or not held) and before - 2.0 * found.cost < small:
+        settled = (number > 2 or not held) and before - 2.0 * found.cost < small
+        if model.share is not None and not held:  # whole rods come no nearer: below a threshold no share changes them
+            settled |= nearest[all_shares] - before < small
+        if settled and (all_shares or held or model.share is None):
             return model, x, found, number
-        if model.share is not None and not held and nearest - before < small:
-            return model, x, found, number  # whole rods come no nearer: below its threshold the share changes nothing
-        nearest = min(nearest, before)
+        nearest[all_shares] = min(nearest[all_shares], before)
     raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")
 
 

@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.calibration import rods
-from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
-from coilset.model.calibration.pressing import Pressing
-from coilset.model.calibration.rods import Branch
+from coilset.model.spring_fit import rods
+from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
+from coilset.model.spring_fit.pressing import Pressing
+from coilset.model.spring_fit.rods import Branch
 
 TESTER = {"friction": "", "compliance": "mm/N", "offset": "mm"}
 LOGARITHMIC = ("G", "yield_stress", "rise", "rate")
@@ -227,6 +227,24 @@ class Model:
                 at[self.share] = share
                 found.append(Missing(at, self._difference(at, self._whole(at))))
         return replace(self, missing=tuple(sorted(found, key=lambda one: float(one.at[self.share or 0]))))
+
+    def shifted(self, x: np.ndarray) -> "Model":
+        """The model that is the whole rod's at these unknowns; what shares have more than others stays, for now.
+
+        Args:
+            x: unknowns.
+
+        Raises:
+            SolveError: if the whole rod finds no equilibrium.
+        """
+        assert self.share is not None
+        now, missing = self._difference(x, self._whole(x)), []
+        for one in self.missing:
+            at = x.copy()
+            at[self.share] = one.at[self.share]
+            more = tuple(self.lacking(at, k) + here - self.lacking(x, k) for k, here in enumerate(now))
+            missing.append(Missing(at, more))
+        return replace(self, missing=tuple(missing))
 
     def _whole(self, x: np.ndarray) -> list[list[Branch]]:
         material = self.form.material(self.values(x), TRIAL)

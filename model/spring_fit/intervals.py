@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.stats import t as student
 
-from coilset.model.calibration.model import LOGARITHMIC, Model
+from coilset.model.spring_fit.model import LOGARITHMIC, Model
 
 CONFIDENCE = 0.95
 LINEAR = 0.1  # by which the rise of the sum of squares may differ from that of linear residuals
@@ -65,11 +65,10 @@ def spread(J: np.ndarray) -> np.ndarray:
     return found
 
 
-def rise(model: Model, found: OptimizeResult) -> float:
-    """s² t²: by how much the sum of squares rises to the end of an interval."""
-    freedom = max(model.readings - len(model.fitted), 1)
-    t = float(student.isf(0.5 * (1.0 - CONFIDENCE) / len(model.fitted), freedom))
-    return 2.0 * float(found.cost) / freedom * t**2
+def rise(model: Model) -> float:
+    """t²: by how much the sum of squares, over the variance s², rises to the end of an interval."""
+    t = student.isf(0.5 * (1.0 - CONFIDENCE) / len(model.fitted), max(model.readings - len(model.fitted), 1))
+    return float(t) ** 2
 
 
 def intervals(model: Model, x: np.ndarray, found: OptimizeResult, J: np.ndarray) -> dict[str, Interval]:
@@ -81,7 +80,7 @@ def intervals(model: Model, x: np.ndarray, found: OptimizeResult, J: np.ndarray)
         J: slopes there.
     """
     low, high = model.bounds
-    limit = rise(model, found)
+    limit = 2.0 * float(found.cost) / max(model.readings - len(model.fitted), 1) * rise(model)
     widths = math.sqrt(limit) * spread(J)
     result = {}
     for k, name in enumerate(model.fitted):

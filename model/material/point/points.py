@@ -11,30 +11,18 @@ from coilset.model.base.kernel import KERNEL
 from coilset.model.material.law.functions import CHANGE
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.parts import Parts
+from coilset.model.material.point.choice import advance_points, solid_point
 from coilset.model.material.point.local import FAILED, TOO_HOT
-from coilset.model.material.point.rod_rows import return_map_points
-from coilset.model.material.point_law import any_point
 
 SMALLEST_SUBSTEP = 1e-9
 
 
 @njit(**KERNEL)
-def _rod(
-    p: np.ndarray, state: np.ndarray, increments: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
-) -> None:
-    by_rows = np.empty((9, state.shape[0]))
-    return_map_points(p, state, increments.T.copy(), new, by_rows, True, count)
-    for i in range(state.shape[0]):
-        for k in range(9):
-            tangent[i, k // 3, k % 3] = by_rows[k, i]
-
-
-@njit(**KERNEL)
-def _one_by_one(
+def _solid(
     law: Any, state: np.ndarray, increments: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
 ) -> None:
     for i in range(state.shape[0]):
-        count[i] = any_point(law, state[i], increments[i], new[i], tangent[i])
+        count[i] = solid_point(law, state[i], increments[i], new[i], tangent[i])
 
 
 def initial_state(law: Law, points: int, components: int = 3, temperature: float | None = None) -> np.ndarray:
@@ -115,10 +103,13 @@ def _advance(
     point_law: np.ndarray | Parts, state: np.ndarray, increments: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     points, components = increments.shape
-    new, tangent = np.empty_like(state), np.empty((points, components, components))
-    count = np.empty(points, dtype=np.int64)
-    loop = _rod if components == 3 and isinstance(point_law, np.ndarray) else _one_by_one
-    loop(point_law, state, increments, new, tangent, count)
+    new, count = np.empty_like(state), np.empty(points, dtype=np.int64)
+    if components == 3:
+        rows = np.empty((9, points))
+        advance_points(point_law, state, increments.T.copy(), new, rows, True, count)
+        return new, rows.T.reshape(points, 3, 3), count
+    tangent = np.empty((points, components, components))
+    _solid(point_law, state, increments, new, tangent, count)
     return new, tangent, count
 
 

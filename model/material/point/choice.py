@@ -1,9 +1,8 @@
 """The law of a section point: numba selects it by the type of the argument that represents the law.
 
 A parameter array means the exponential return map, `Parts` the point problem, `OwnPoints` a law of one's own, to whose
-loop it holds a pointer. The choice is made when a section's loop
-is compiled (njit) for one of them: a material of the first kind has no extra cost for what it does not do, and compiles
-none of it.
+loop it holds a pointer. The choice is made when a section's loop is compiled (njit) for one of them: a material of the
+first kind has no extra cost for what it does not do, and compiles none of it.
 """
 
 from collections.abc import Callable
@@ -47,11 +46,6 @@ def rod_point(law: Any, old: np.ndarray, e11: float, g12: float, g13: float, new
     raise NotImplementedError("only compiled loops call it")
 
 
-def any_point(law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
-    """One increment of the form that `de` belongs to; see `rod_point` and `solid_point`."""
-    raise NotImplementedError("only compiled loops call it")
-
-
 # strict: would compare annotations, which a lambda has not
 @overload(rod_points, strict=False)
 def _rod_points(
@@ -70,16 +64,9 @@ def _rod_points(
 def own_points(
     law: OwnPoints, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
 ) -> bool:
-    """One increment of a law of one's own at many points, or at one with `de` and `tangent` of shapes (3,), (3, 3)."""
+    """One increment of a law of one's own at many points."""
     places = old.ctypes, de.ctypes, law.values.ctypes, len(law.values), new.ctypes, tangent.ctypes, count.ctypes
     return law.loop(*places, len(count)) == 1
-
-
-@njit(**KERNEL)
-def _own_point(law: OwnPoints, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
-    count = np.empty(1, np.int64)
-    own_points(law, old, de, new, C, count)
-    return count[0]
 
 
 @njit(**KERNEL)
@@ -110,10 +97,16 @@ def rod_map(law: Parts, old: np.ndarray, e11: float, g12: float, g13: float, new
 
 @njit(**KERNEL)
 def advance_points(
-    law: Any, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
+    law: Any,
+    old: np.ndarray,
+    strain: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+    with_tangent: bool,
+    count: np.ndarray,
 ) -> bool:
-    """`rod_points` from Python, without the tangent; `strain` of shape (3, points), C as work space."""
-    return rod_points(law, old, strain, new, C, False, count)
+    """`rod_points` from Python."""
+    return rod_points(law, old, strain, new, tangent, with_tangent, count)
 
 
 @overload(solid_point, strict=False, inline="always")
@@ -128,18 +121,3 @@ def _rod_point(law: Any, old: Any, e11: Any, g12: Any, g13: Any, new: Any, C: An
     if not isinstance(law, types.BaseNamedTuple):
         return lambda law, old, e11, g12, g13, new, C: rod.return_map(law, old, e11, g12, g13, new, C)
     return lambda law, old, e11, g12, g13, new, C: rod_map(law, old, e11, g12, g13, new, C)
-
-
-@overload(any_point, strict=False)
-def _any_point(law: Any, old: Any, de: Any, new: Any, C: Any) -> Callable[..., int]:
-    if isinstance(law, types.BaseNamedTuple):
-        if law.instance_class is OwnPoints:
-            return lambda law, old, de, new, C: _own_point(law, old, de, new, C)
-        return lambda law, old, de, new, C: (
-            rod_map(law, old, de[0], de[1], de[2], new, C) if de.shape[0] == 3 else advance(law, old, de, new, C)
-        )
-    return lambda law, old, de, new, C: (
-        rod.return_map(law, old, de[0], de[1], de[2], new, C)
-        if de.shape[0] == 3
-        else solid.return_map(law, old, de, new, C)
-    )

@@ -14,11 +14,11 @@ from mpi4py import MPI
 from scipy.interpolate import PchipInterpolator
 
 from coilset.model.base.entry import check_entries
-from coilset.model.calibration.pressing import Pressing
 from coilset.model.case.case import Case
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.record import Step
 from coilset.model.run.analysis import Analysis
+from coilset.model.spring_fit.pressing import Pressing
 from coilset.model.uniform.equivalent import coil
 from coilset.model.uniform.rod import UniformState, press
 

@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
-from coilset.model.calibration.fit import SpringFit
-from coilset.model.calibration.pressing import Pressing
+from coilset.model.spring_fit.fit import SpringFit
+from coilset.model.spring_fit.pressing import Pressing
 
 
 def figure(fit: SpringFit) -> Figure:

@@ -4,11 +4,40 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from coilset.model.material.creep.law import CREEP_COLUMNS, TEMPERATURE, CreepLaw
-from coilset.model.material.creep.rate import RateLaw, law_in_time
+from coilset.model.material.creep.law import CREEP_COLUMNS, HOURS, TEMPERATURE, CreepLaw, at_rate
+from coilset.model.material.law.file import RateDependence
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.parts import Parts
-from coilset.model.material.points import initial_state
+from coilset.model.material.point.points import initial_state
+
+
+class RateLaw:
+    """Yield that depends on the rate, see `coilset.model.material.point.overstress`.
+
+    Args:
+        data: the checked entries.
+        parts: Parts of the law, `Law.parts()`.
+    """
+
+    def __init__(self, data: RateDependence, parts: Parts) -> None:
+        self.data, self._parts = data, parts
+
+    def clock(self, hours: float, temperature: float, before: np.ndarray | None = None) -> np.ndarray:
+        """The clock, shape (3,), as `CreepLaw.clock`; temperature has no effect on the rate."""
+        return np.array([hours, temperature, 0.0])
+
+    def over(self, start: np.ndarray, end: np.ndarray) -> Parts:
+        """The law over the time between two clocks."""
+        plastic = at_rate(self.data, self._parts.plastic, float(end[HOURS] - start[HOURS]))
+        return self._parts._replace(plastic=plastic)
+
+
+def law_in_time(law: Law, plastic: np.ndarray) -> CreepLaw | RateLaw | None:
+    """What the material does in time: creep, rate-dependent yield, or nothing."""
+    parts = law.parts(plastic)
+    if law.creep:
+        return CreepLaw(law.creep, parts, law.is_adiabatic, law.data.rate)
+    return RateLaw(law.data.rate, parts) if law.data.rate else None
 
 
 class LawOverTime:

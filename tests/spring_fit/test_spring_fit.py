@@ -6,14 +6,16 @@ import yaml
 from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError
-from coilset.model.calibration import rods
-from coilset.model.calibration.fit import fit_springs
-from coilset.model.calibration.laws import TRIAL, Form
-from coilset.model.calibration.next_press import next_press
-from coilset.model.calibration.pressing import read_pressing
+from coilset.model.case import check
 from coilset.model.material import library, programs
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
+from coilset.model.spring_fit import rods
+from coilset.model.spring_fit.fit import fit_springs
+from coilset.model.spring_fit.laws import TRIAL, Form
+from coilset.model.spring_fit.next_press import next_press
+from coilset.model.spring_fit.pressing import read_pressing
+from coilset.model.standards.case_warnings import case_warnings
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.springs import spring_fit as study
 from coilset.verification.references import heun
@@ -126,6 +128,32 @@ def test_one_short_press_leaves_hardening_open_and_says_which_press_would_tell(b
     assert advice.narrower < 0.5
 
 
+def test_the_advice_does_not_promise_what_a_threshold_hides(by_uniform_rods):
+    """Where the true share may lie below the threshold of every press, most shares stay possible on average."""
+    rng = np.random.default_rng(0)
+    press = study.noisy(study.pressed(study.spring(), [16.5], uniform=True), rng)
+    found = fit_springs([press], known={"G": 80000.0, "rise": 800.0})
+    assert found.intervals["share"].undetermined
+    advice = next_press(found)
+    share_left = advice.narrower if advice.name == "share" else 1.0
+    assert share_left > 0.3  # a share below about 0.65 is one of 13 of the 21
+
+
+@pytest.mark.parametrize(
+    ("known", "tester", "message"),
+    [
+        ({"Q": 1.0}, [], "--known: 'Q' is none of G, yield_stress"),
+        ({"share": 3.0}, [], "--known: share must be from 0 to 1"),
+        ({"G": -80000.0}, [], "--known: G must be positive"),
+        ({}, ["frict"], "--tester: 'frict' is none of friction, compliance, offset"),
+    ],
+)
+def test_wrong_names_and_values(known, tester, message):
+    with pytest.raises(InputError) as error:
+        fit_springs([], known=known, tester=tester)
+    assert str(error.value).startswith(message)
+
+
 def test_tester_friction_and_compliance_are_fitted(by_uniform_rods):
     """μ 1 % and 1e-3 mm/N added to the readings come back; a loop of friction is no set."""
     from dataclasses import replace
@@ -143,14 +171,15 @@ def test_tester_friction_and_compliance_are_fitted(by_uniform_rods):
 
 def test_the_command_fits_whole_rods_to_lengths(tmp_path):
     """Free lengths alone, G and the shape of hardening given: yield stress and rise; a material file that loads."""
-    case, form = study.spring(), Form("voce", 0.3, 293.15)
+    case, form = study.spring(), Form("voce", 206.0 / 163.0 - 1.0, 293.15)
     tops = [10.0, 15.0, 20.0, 25.0]
     none = study.pressed(case, [1.0], uniform=True)
     ends = [end for top in tops for end in (top, None)]
     free = [branch.free for branch in rods.whole(none, form.material(study.TRUE, TRIAL), ends)[1::2]]
     rows = [f"{44 - top:g};{44 - after:.3f}" for top, after in zip(tops, free, strict=True)]
     (tmp_path / "lengths.csv").write_text("height;free_length\n" + "\n".join(rows).replace(".", ",") + "\n")
-    (tmp_path / "spring.yaml").write_text(yaml.safe_dump(case.model_dump(mode="json")))
+    named = case.model_dump(mode="json") | {"material": {"wire": "EN 10270-1 SH"}}
+    (tmp_path / "spring.yaml").write_text(yaml.safe_dump(named))
     arguments = ["fit", "--spring", str(tmp_path / "lengths.csv"), str(tmp_path / "spring.yaml"), "--name", "mine"]
     for one in ("G=80000", "rate=300", "share=0.5"):
         arguments += ["--known", one]
@@ -161,3 +190,11 @@ def test_the_command_fits_whole_rods_to_lengths(tmp_path):
     assert "coilset material fit --spring: lengths" in law.source
     assert "95 % intervals: yield_stress" in law.validity.remark
     assert (tmp_path / "fit.png").stat().st_size > 20_000
+    assert law.temperatures == (293.15, 473.15)  # the standard's slope of G, 0.25 ‰ per kelvin
+    assert law.moduli(473.15)[1] / 80000.0 == pytest.approx(1.0 - 2.5e-4 * 180.0)
+    warm = check(named | {"material": str(tmp_path / "mine.yaml"), "temperature": 393.15})
+    told = [one for one in case_warnings(warm, warm.spring.build(), law) if one.name == "temperature"]
+    assert [one.message.partition(":")[0] for one in told] == [
+        "yield and hardening of mine were tested at 293.15 K only and stay so at 393.15 K"
+    ]
+    assert not any(one.name == "temperature" for one in case_warnings(case, case.spring.build(), law))

@@ -2,8 +2,10 @@
 
 By the uniform rod: with the slopes J of the residuals of a press that has not been made, the covariance becomes
 (JᵀJ + J₀ᵀJ₀)⁻¹, J₀ of the presses that have been; the travel of its turn is an unknown of its own. The share of
-kinematic hardening changes nothing below a threshold; in place of its slope stands the secant to the share that is
-farther away.
+kinematic hardening changes nothing below a threshold that a press has, so that no slope says how well it is known: if
+it is s, those s' remain whose residuals, with all other unknowns following, differ by less than an interval allows.
+The width of what remains is averaged over the shares s that are possible today. For the other constants the secant to
+the share that is farther away stands in place of its slope.
 """
 
 from collections.abc import Sequence
@@ -12,13 +14,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coilset.model.base.errors import SolveError
-from coilset.model.calibration.fit import SpringFit
-from coilset.model.calibration.intervals import spread
-from coilset.model.calibration.model import Missing, Model
-from coilset.model.calibration.pressing import Pressing
+from coilset.model.spring_fit.fit import SpringFit
+from coilset.model.spring_fit.intervals import THRESHOLD, rise, spread
+from coilset.model.spring_fit.model import Missing, Model
+from coilset.model.spring_fit.pressing import Pressing
 
 HEIGHTS = 12  # that are tried
 READINGS = 30  # of each branch
+SHARES = np.linspace(0.0, 1.0, 21)  # that are told apart
 WORTH = 0.7  # of the present width: a press that leaves more is not worth making for a constant
 
 
@@ -43,13 +46,13 @@ def next_press(fit: SpringFit) -> Advice | None:
     """The best next press of a spring of the first kind; None where nothing is fitted that it could tell."""
     model, one = fit.model, fit.model.pressings[0]
     count = len(model.fitted)
-    today = _slopes(model, fit.x)
-    before = spread(today)[:count]
+    today = _seen(model, fit.x)
+    before = _widths(today, fit)
     wanted = [model.fitted.index(name) for name in fit.doubtful] or [int(np.argmax(before))]
     trials = []
     for travel in np.linspace(0.25, 0.98, HEIGHTS) * one.furthest:
         try:
-            after = spread(_joined(today, _trial(fit, one, float(travel)), count))[:count]
+            after = _widths(today.joined(_trial(fit, one, float(travel)), count), fit)
         except SolveError:
             continue
         trials.append((one.spring.free_length - float(travel), after / before))
@@ -58,22 +61,59 @@ def next_press(fit: SpringFit) -> Advice | None:
     open_ = tuple(model.fitted[k] for k in wanted if min(ratio[k] for _, ratio in trials) > WORTH)
     hopeful = [k for k in wanted if model.fitted[k] not in open_] or wanted
     height, ratio = min(trials, key=lambda pair: max(pair[1][k] for k in hopeful))
-    worst = max(hopeful, key=lambda k: before[k])
+    worst = max(hopeful, key=lambda k: ratio[k])
     return Advice(height, model.fitted[worst], float(ratio[worst]), open_)
 
 
-def _slopes(model: Model, x: np.ndarray) -> np.ndarray:
-    """Slopes of the residuals, with the secant of the share."""
+@dataclass(frozen=True)
+class _Seen:
+    """What presses show.
+
+    Attributes:
+        J: slopes of the residuals, with the secant of the share, shape (residuals, unknowns).
+        shares: residuals at each of `SHARES`, shape (shares, residuals); none if the share is not fitted.
+    """
+
+    J: np.ndarray
+    shares: np.ndarray
+
+    def joined(self, other: "_Seen", count: int) -> "_Seen":
+        """Both, of which only the first `count` unknowns, the constants, are the same."""
+        more, turns = other.J.shape[1] - count, self.J.shape[1] - count
+        upper = np.hstack([self.J, np.zeros((len(self.J), more))])
+        lower = np.hstack([other.J[:, :count], np.zeros((len(other.J), turns)), other.J[:, count:]])
+        return _Seen(np.vstack([upper, lower]), np.hstack([self.shares, other.shares]))
+
+
+def _seen(model: Model, x: np.ndarray) -> _Seen:
     J = model.slopes(x)
+    at, rows = model.share, []
+    if at is not None:
+        for share in SHARES:
+            moved = x.copy()
+            moved[at] = share
+            rows.append(model.residual(moved))
+        far = 0 if x[at] > 0.5 else -1
+        J[:, at] = (rows[far] - model.residual(x)) / (SHARES[far] - x[at])
+    return _Seen(J, np.array(rows).reshape(-1, len(J)))
+
+
+def _widths(seen: _Seen, fit: SpringFit) -> np.ndarray:
+    """Widths of the intervals of all constants, those of the share over what it can be."""
+    model = fit.model
+    limit = fit.scatter**2 * rise(model)
+    found = np.sqrt(limit) * spread(seen.J)[: len(model.fitted)]
     if model.share is not None:
-        far = x.copy()
-        far[model.share] = 0.0 if x[model.share] > 0.5 else 1.0
-        J[:, model.share] = (model.residual(far) - model.residual(x)) / (far[model.share] - x[model.share])
-    return J
+        others, _ = np.linalg.qr(np.delete(seen.J, model.share, axis=1))
+        r = seen.shares - (seen.shares @ others) @ others.T
+        alike = np.sum((r[:, None] - r[None]) ** 2, axis=2) < THRESHOLD * limit
+        now = fit.intervals["share"]
+        found[model.share] = np.mean(alike[np.clip(SHARES, now.low, now.high) == SHARES])
+    return found
 
 
-def _trial(fit: SpringFit, one: Pressing, travel: float) -> np.ndarray:
-    """Slopes of a press that has not been made."""
+def _trial(fit: SpringFit, one: Pressing, travel: float) -> _Seen:
+    """What a press that has not been made would show."""
     places = np.linspace(0.0, travel, READINGS + 1)[1:]
     branch = np.repeat([0, 1], READINGS)
     made = replace(
@@ -98,15 +138,7 @@ def _trial(fit: SpringFit, one: Pressing, travel: float) -> np.ndarray:
     model = replace(model, pressings=(made,))
     top = float(made.force.max())
     weights = np.hypot(model.errors.force * made.force, top / travel * model.errors.travel)
-    return _slopes(replace(model, weights=(np.where(made.force > 0.01 * top, weights, np.inf),)), x)
-
-
-def _joined(first: np.ndarray, second: np.ndarray, count: int) -> np.ndarray:
-    """Slopes of both, of which only the constants are the same unknowns."""
-    more, turns = second.shape[1] - count, first.shape[1] - count
-    upper = np.hstack([first, np.zeros((len(first), more))])
-    lower = np.hstack([second[:, :count], np.zeros((len(second), turns)), second[:, count:]])
-    return np.vstack([upper, lower])
+    return _seen(replace(model, weights=(np.where(made.force > 0.01 * top, weights, np.inf),)), x)
 
 
 def words(advice: Advice | None, undetermined: Sequence[str]) -> list[str]:
@@ -123,6 +155,6 @@ def words(advice: Advice | None, undetermined: Sequence[str]) -> list[str]:
         what = "determine" if advice.name in undetermined else "narrow"
         told.append(
             f"next: press a fresh spring to {advice.height:.4g} mm; the interval of {advice.name} would become "
-            f"{advice.narrower:.2g} times as wide, which would {what} it best"
+            f"{advice.narrower:.2g} times as wide on average, which would {what} it best"
         )
     return told
