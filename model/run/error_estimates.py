@@ -39,7 +39,7 @@ from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.manufacture.initial_state import give_sections_past
 from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step
 from coilset.model.results.records.releases import Release, last_release
-from coilset.model.results.records.stresses import change_of_sign, shear_inside
+from coilset.model.results.stresses import change_of_sign, shear_inside
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule, polar
 from coilset.model.standards.case_warnings import keeps_elastic_warping, warping_can_be_estimated

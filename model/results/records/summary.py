@@ -13,7 +13,10 @@ from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates, tension, turning
 from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
 from coilset.model.results.records.releases import Release, is_turned, releases
-from coilset.model.results.records.stresses import (
+from coilset.model.results.records.summary_entries import Summary
+from coilset.model.results.records.warnings import run_warnings
+from coilset.model.results.records.working import LINE, WorkingState, plastic_rise, working_numbers
+from coilset.model.results.stresses import (
     bending,
     beyond_coil,
     ends_peak,
@@ -22,9 +25,6 @@ from coilset.model.results.records.stresses import (
     shear_inside,
     shear_peak,
 )
-from coilset.model.results.records.summary_entries import Summary
-from coilset.model.results.records.warnings import run_warnings
-from coilset.model.results.records.working import LINE, WorkingState, plastic_rise, working_numbers
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 

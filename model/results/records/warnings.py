@@ -10,8 +10,8 @@ from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 from coilset.model.results.records.releases import FREE, is_turned, last_release
-from coilset.model.results.records.stresses import shear_inside
 from coilset.model.results.records.working import working_warnings
+from coilset.model.results.stresses import shear_inside
 from coilset.model.section import surface
 from coilset.model.standards.working import presetting_warning
 
