@@ -133,6 +133,9 @@ def fit_springs(
 ) -> SpringFit:
     """Identify the constants of a wire from springs that are pressed and released.
 
+    A share of back stress that is not determined is the middle of its interval, and the other constants belong to
+    it: at the end of its interval the wire is about to flow backwards, and a deeper press would set too little.
+
     Args:
         pressings: of springs of this wire, each from its unset state on.
         form: of the law, voce or thesis.
@@ -165,12 +168,30 @@ def fit_springs(
     if held and like is None:
         model, x, found, more = _settle(model, x, ())
         rounds += more
-    J = model.slopes(x)
+    within = intervals(model, x, found, model.slopes(x))
+    return _result(model, *_central(model, x, found, within), within, rounds)
+
+
+def _central(
+    model: Model, x: np.ndarray, found: OptimizeResult, within: Mapping[str, Interval]
+) -> tuple[np.ndarray, OptimizeResult]:
+    """The unknowns of least squares, but a share that is not determined in the middle of its interval."""
+    if model.share is None or not within["share"].undetermined:
+        return x, found
+    middle = x.copy()
+    middle[model.share] = 0.5 * (within["share"].low + within["share"].high)
+    return minimum(model, middle, [model.share])
+
+
+def _result(
+    model: Model, x: np.ndarray, found: OptimizeResult, within: Mapping[str, Interval], rounds: int
+) -> SpringFit:
+    values = model.values(x)
     return SpringFit(
         model,
         x,
-        intervals(model, x, found, J),
-        correlation(J, len(model.fitted)),
+        {name: replace(one, value=values[name]) for name, one in within.items()},
+        correlation(model.slopes(x), len(model.fitted)),
         _scatter(model, found),
         _following(model, found),
         rounds,
