@@ -17,6 +17,7 @@ by exp(φ (h + h₂)/2) from the middle of the last step, and by exp(φ (h + 2 h
 import numpy as np
 from petsc4py import PETSc
 
+from coilset.model.base.agreement import max_of_ranks
 from coilset.model.equilibrium.path.step_control import Position
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.load import Load
@@ -75,7 +76,8 @@ class Guess:
         if self.probed is None or not load.prescribed:
             return None
         guess, probe = self.probed
-        if not np.array_equal(load.held, probe.held):
+        differs = float(not np.array_equal(load.held, probe.held))  # on any rank: they take the same start
+        if max_of_ranks(load.layout.comm, differs):
             return None
         guess = guess.copy()
         guess.scale(load.multiple_of(probe))
