@@ -101,7 +101,9 @@ def run(study: Study) -> None:
     for ends, analysis in plastic.items():
         after = judge_release(study, ends, columns(analysis), wahl)
         if ends == "open":
-            study.check("release, open ends: rate after lift-off, N/mm", after, tips, "Castigliano", 0.02)
+            # of the spring as wound; this one has set, and by more at its end coils on harder seats: −0.4 % with a
+            # bedding of E/40, +1.2 % with E/10, +2.9 % with E/4
+            study.check("release, open ends: rate after lift-off, N/mm", after, tips, "Castigliano", 0.04)
     held_tips(study, bending)
     draw_paths(study, elastic)
     draw_release(study, plastic, tips)
