@@ -54,7 +54,7 @@ def problem(data):
         ({"mesh": [1]}, "mesh: [1]: must be a group of entries"),
         (
             {"contact": {"friction": 0.15}},
-            "contact.friction: 0.15: must be a group of entries, as in {name: value}, of seats, coils$",
+            "contact.friction: 0.15: must be a group of entries, as in {name: value}, of seats, coils, guides$",
         ),
         ({"material": {"wire": 1.4310}}, "material.wire: 1.431: must be a word; a number in quotation marks is one$"),
         ({"outer": {"case": "a.yaml"}}, "outer: unknown entry; a file with it is for coilset nest$"),

@@ -42,7 +42,9 @@ def test_nothing_is_run_again_where_it_need_not_or_would_not_suffice(parts, left
 
 
 def test_a_number_out_of_reach_does_not_keep_others_from_being_made_finer():
-    found = RunErrors(*(Errors(force, set_, None) for force, set_ in ((0.1, 0.1), (1.0, 9.0), (0.1, 0.1), (0.1, 0.1))))
+    found = RunErrors(
+        *(Errors(force, set_, None) for force, set_ in ((0.1, 0.1), (1.0, 9.0), (0.1, 0.1), (0.1, 0.1), (0.0, 0.0)))
+    )
     assert needed(found, {"force_N": 1.0, "set_mm": 1.0}, ALL) == needed(
         errors(0.1, 1.0, 0.1, 0.1), {"force_N": 1.0}, ALL
     )
