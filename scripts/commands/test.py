@@ -21,6 +21,7 @@ SOLVES = [
     "meshes/test_solved_springs.py",
     "solid",
     "spring",
+    "spring_fit",
     "verification",
 ]
 

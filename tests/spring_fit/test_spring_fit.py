@@ -80,11 +80,12 @@ def test_wrong_files(text, message, tmp_path):
 
 
 def test_constants_return_within_their_intervals(by_uniform_rods):
-    """Six sets of noise; in each all constants are inside with a chance of 95 %, and in four or fewer with 3 %."""
+    """Three sets of noise; in each all constants are inside with a chance of 95 %, in one or none with 0.7 %. Of 40 sets
+    none was outside (`verify spring-fit`)."""
     case = study.spring()
     clean = [study.pressed(case, [top], uniform=True) for top in (16.5, 24.0)]
     first, scatter, outside = None, [], 0
-    for seed in range(6):
+    for seed in range(3):
         rng = np.random.default_rng(seed)
         found = fit_springs([study.noisy(one, rng) for one in clean], like=first)
         first = first or found
@@ -94,7 +95,7 @@ def test_constants_return_within_their_intervals(by_uniform_rods):
         one = found.intervals["yield_stress"]
         assert 0.01 < one.high / one.low - 1.0 < 0.2
     assert outside <= 1
-    assert np.mean(scatter) == pytest.approx(1.0, abs=0.08)
+    assert np.mean(scatter) == pytest.approx(1.0, abs=0.11)
     others = np.delete([one.at for one in found.model.missing], found.model.share, axis=1)
     assert len(others) >= 5
     assert np.ptp(others, axis=0).max() == 0.0  # whole rods of all shares have the same other constants, of this set
