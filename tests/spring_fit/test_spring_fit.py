@@ -80,8 +80,10 @@ def test_wrong_files(text, message, tmp_path):
 
 
 def test_constants_return_within_their_intervals(by_uniform_rods):
-    """Three sets of noise; in each all constants are inside with a chance of 95 %, in one or none with 0.7 %. Of 40 sets
-    none was outside (`verify spring-fit`)."""
+    """Three sets of noise; in each all constants are inside with a chance of 95 %, in one or none with 0.7 %.
+
+    Of 40 sets none was outside (`verify spring-fit`).
+    """
     case = study.spring()
     clean = [study.pressed(case, [top], uniform=True) for top in (16.5, 24.0)]
     first, scatter, outside = None, [], 0
