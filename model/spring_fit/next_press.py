@@ -21,7 +21,7 @@ from coilset.model.spring_fit.pressing import Pressing
 
 HEIGHTS = 12  # that are tried
 READINGS = 30  # of each branch
-SHARES = np.linspace(0.0, 1.0, 21)  # that are told apart
+SHARES = np.linspace(0.0, 1.0, 21)  # that are distinguished
 WORTH = 0.7  # of the present width: a press that leaves more is not worth making for a constant
 
 

@@ -24,7 +24,7 @@ LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
 ROUNDING = 1e-3  # by which a limit that is given with few digits may be exceeded
 NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
 # Of the accuracy for residual stresses: they follow the strains, which converge by an order less than heights, and a
-# diffractometer sees some MPa.
+# diffractometer resolves some MPa.
 STRESS = 5.0
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
