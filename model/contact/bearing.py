@@ -1,9 +1,9 @@
 """Where the wire bears: compiled sums over the elements of a contact, for the records of a step."""
 
 import numpy as np
-from numba import njit
 
 from coilset.model.contact.curve import STENCIL
+from coilset.model.runtime.kernels import njit
 
 
 @njit(cache=True)

@@ -6,7 +6,6 @@ neither is the master.
 """
 
 import numpy as np
-from numba import njit
 
 from coilset.meshes.boundary import Boundary
 from coilset.model.base.extremes import greatest, relative_motion
@@ -24,6 +23,7 @@ from coilset.model.contact.search import (
     place,
     post_stride,
 )
+from coilset.model.runtime.kernels import njit
 
 FEW = 1024  # locations on other coils for which there is room at first
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought

@@ -13,7 +13,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 STENCIL = 4  # stations that a point depends on
 POINTS_PER_ELEMENT = 2  # points of the bedding in an element: its station and its middle

@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from coilset.model.contact.curve import STENCIL, Curve, point_on_curve, station_weight
 from coilset.model.contact.gauge import gauge
+from coilset.model.runtime.kernels import njit
 
 COMPILED = {"cache": True, "error_model": "numpy"}
 PAIR = 6 * STENCIL  # displacements of the eight stations of a pair

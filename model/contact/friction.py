@@ -29,7 +29,6 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 
 from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory, TrialPositions
 from coilset.model.contact.coils import Coils
@@ -39,6 +38,7 @@ from coilset.model.contact.hold import Guide
 from coilset.model.contact.seat import Seat
 from coilset.model.rotations.triples import Triple, axis, back, cross, dot, plus, scaled, times, triple
 from coilset.model.rotations.vectors import chart_derivatives, rotation_derivatives
+from coilset.model.runtime.kernels import njit
 
 NODAL = 3 * STENCIL  # displacements, or rotations, of the four stations that a point depends on
 Pair = tuple[np.ndarray, np.ndarray]

@@ -14,10 +14,10 @@ direction to the coil: outwards is that of the stress-free wire.
 import math
 
 import numpy as np
-from numba import njit
 from scipy.interpolate import CubicSpline
 
 from coilset.meshes.boundary import Boundary
+from coilset.model.runtime.kernels import njit
 
 DIRECTIONS = 720  # of half a turn, between which κ is a cubic spline
 CORNERS = 16_384  # of the section's polygon from which κ is computed: κ″ of a circle is met within 1e-3

@@ -4,10 +4,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from coilset.model.contact.curve import Curve, element_polynomials, points_on_wire
 from coilset.model.contact.gauge import gauge
+from coilset.model.runtime.kernels import njit
 
 LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
 PLACES, TURNS_TO_NEXT = 6, 1.5  # of locations, see `place`; turns up to which a location is on the next coil

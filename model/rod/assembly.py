@@ -1,7 +1,8 @@
 """From the elements to the rod: elements that are taken together, and compiled sums over them."""
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 
 def blocks(cells: slice, size: int) -> list[slice]:

@@ -14,11 +14,11 @@ is the error of the section forces. Errors that plastic flow erases are erased h
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
-from numba import njit
 
 from coilset.model.body.state import State, Where
 from coilset.model.rod.assembly import blocks
 from coilset.model.rod.elements import Element
+from coilset.model.runtime.kernels import njit
 from coilset.model.section.kinds import Sections
 
 BLOCK = 256  # cells that are followed together: only for these the state on the way is kept

@@ -4,7 +4,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from coilset.model.rod.elements import PER_LENGTH, AtSections
 from coilset.model.rod.numbering import Numbering
@@ -16,6 +15,7 @@ from coilset.model.rotations.kernels import (
     multiply_transposed,
     rotate,
 )
+from coilset.model.runtime.kernels import njit
 
 
 class Configuration(NamedTuple):

@@ -11,13 +11,13 @@ Methods Appl. Mech. Engrg. 313 (2017). At equilibrium both are the same.
 import math
 
 import numpy as np
-from numba import njit
 
 from coilset.model.rod.assembly import blocks
 from coilset.model.rod.coefficients import Coefficients
 from coilset.model.rod.elements import PER_LENGTH, AtSections, Element
 from coilset.model.rod.kinematics import Triads
 from coilset.model.rod.numbering import Numbering
+from coilset.model.runtime.kernels import njit
 
 BLOCK = 4096  # cells that are taken together, so that no large arrays are made on the way
 

@@ -7,7 +7,8 @@ into arrays of the caller, so that a loop over nodes allocates nothing.
 import math
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 
 @njit(cache=True)

@@ -1,7 +1,8 @@
 """Vectors of three numbers as tuples, for compiled loops: they lie in registers, and nothing is allocated."""
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 COMPILED = {"cache": True, "error_model": "numpy"}
 Triple = tuple[float, float, float]

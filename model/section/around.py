@@ -1,7 +1,8 @@
 """Shear stress about the wire's axis, compiled."""
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 
 @njit(cache=True)

@@ -1,9 +1,9 @@
 """Strains from the chord to the true section, and resultants and tangent back."""
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import KERNEL
+from coilset.model.runtime.kernels import njit
 
 
 @njit(**KERNEL)

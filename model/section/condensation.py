@@ -3,10 +3,10 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import KERNEL
 from coilset.model.material.point.choice import solid_point
+from coilset.model.runtime.kernels import njit
 
 # A change of the warping, a strain, that ends the iteration. Its effect on the resultants is added to them, so that
 # their error is its square over the strain at which the law's slope changes, some 1e-3.

@@ -14,10 +14,10 @@ several partial sums, so that neighbouring points can be added at once.
 import math
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import KERNEL
 from coilset.model.material.point.choice import rod_points
+from coilset.model.runtime.kernels import njit
 
 FIBRES = 5  # rows of `fibres`: y, z, u, v and area
 SUMS = KERNEL | {"fastmath": {"contract", "reassoc", "nsz"}, "forceinline": True}

@@ -20,12 +20,12 @@ import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numba import njit
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.choice import solid_point
+from coilset.model.runtime.kernels import njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import condense, find_warping, strain_operator

@@ -13,7 +13,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 SAMPLES = 4  # intervals of an edge in the search for the closest point
 ITERATIONS = 12

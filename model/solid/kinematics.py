@@ -13,7 +13,8 @@ rotations of tensors are orthogonal 6 × 6 matrices.
 import math
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 ROOT2 = math.sqrt(2.0)
 FIRST = (0, 1, 2, 0, 0, 1)

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.choice import solid_point
+from coilset.model.runtime.kernels import njit
 
 
 @njit(cache=True)

@@ -20,11 +20,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.errors import SolveError
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.points import initial_state
+from coilset.model.runtime.kernels import njit
 from coilset.model.section.rules import DiskRule, polar, upper_half
 from coilset.model.uniform.section import RISE, Coil, force_shear, step
 

@@ -1,12 +1,15 @@
-"""Compiled functions are kept by the content of all their sources."""
+"""Compiled functions are kept by the content of their sources."""
 
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numba
+import pytest
 
-from coilset.model.runtime import caches
+from coilset.model.material.point.stage import evaluate
+from coilset.model.runtime import caches, kernels
 
 
 def version(monkeypatch, sources, root="kept"):
@@ -30,6 +33,51 @@ def test_a_changed_callee_gives_a_new_folder(monkeypatch, tmp_path):
     assert version(monkeypatch, tmp_path) == first
     callee.write_text("@njit\ndef b(): return 2")
     assert version(monkeypatch, tmp_path) != first
+
+
+@pytest.fixture
+def sources(monkeypatch, tmp_path):
+    """A function that writes a file of a program in a checkout, and gives its path."""
+    monkeypatch.setattr(kernels, "ROOT", tmp_path)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept" / "version"))
+
+    def write(path, text):
+        kernels.imported.cache_clear()
+        kernels.digest.cache_clear()
+        file = tmp_path / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+        return file
+
+    return write
+
+
+def test_a_kernel_is_kept_by_all_that_it_imports(sources):
+    """Also by what its imports import, modules or names of modules, and constants; not by the rest."""
+    caller = sources("model/caller.py", "from coilset.model.law import (\n    yields,\n)\nx = 1")
+    sources("model/law/yields.py", "    from coilset.model.constants import K")
+    sources("model/constants.py", "K = 1\nfrom coilset.model.caller import x")
+    first = kernels.digest(caller)
+    sources("model/other.py", "y = 1")
+    assert kernels.digest(caller) == first
+    sources("model/constants.py", "K = 2\nfrom coilset.model.caller import x")
+    assert kernels.digest(caller) not in (first, None)
+
+
+def test_checkouts_share_kernels(sources, monkeypatch, tmp_path):
+    """And all that is coilset's has such a place."""
+    places = []
+    for checkout in ("one", "two"):
+        file = sources(f"{checkout}/model/caller.py", "def f(): pass")
+        monkeypatch.setattr(kernels, "ROOT", tmp_path / checkout)
+        places.append(kernels.ByContent.from_function(version, str(file)).get_cache_path())
+    assert places[0] == places[1]
+    assert kernels.ByContent.from_function(version, "/elsewhere/model/caller.py") is None
+
+
+def test_kernels_of_this_checkout_are_kept_by_content():
+    folder = Path(evaluate._cache._cache_path)
+    assert folder.name == kernels.digest(kernels.ROOT / "model/material/point/stage.py")
 
 
 ADD = """

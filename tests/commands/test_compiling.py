@@ -99,13 +99,6 @@ def test_a_command_compiles_only_the_stages_that_it_needs(cold):
     assert all(compiled(stage).exists() for stage in compiling.STAGES)
 
 
-def test_kernels_of_another_checkout_do_not_count(cold, monkeypatch):
-    """They lie beside each other, each under the folder of its sources."""
-    compile_first(say=lambda line: None)
-    monkeypatch.setattr(compiling, "SOURCES", "elsewhere")
-    assert not compiled("rod").exists()
-
-
 def test_wrong_input_is_refused_before_anything_is_compiled(cold):
     def check():
         raise InputError("is wrong", "place")

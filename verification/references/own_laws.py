@@ -9,7 +9,8 @@ follows from |n|² = k² by the implicit function theorem, including the fractio
 """
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 COMPILED = njit(cache=True, error_model="numpy")
 

@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
+from coilset.model.runtime.kernels import njit
 
 Reason = PETSc.SNES.ConvergedReason
 REASONS = {value: name for name, value in vars(Reason).items() if isinstance(value, int)}

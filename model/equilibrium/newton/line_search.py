@@ -14,13 +14,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.newton.contact_limit import ContactLimit
 from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
+from coilset.model.runtime.kernels import njit
 
 
 class StepLength(NamedTuple):

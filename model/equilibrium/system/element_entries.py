@@ -1,12 +1,12 @@
 """The elements' entries in a matrix: their places are found once for each pattern, not each time."""
 
 import numpy as np
-from numba import njit
 from petsc4py import PETSc
 
 from coilset.model.body.body import Body
 from coilset.model.equilibrium.system.aij import AijEntries
 from coilset.model.equilibrium.system.layout import Layout
+from coilset.model.runtime.kernels import njit
 
 
 class ElementEntries:

@@ -8,7 +8,8 @@ station mostly have the same neighbours.
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 
 def join_patterns(

@@ -6,12 +6,12 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numba import njit
 from petsc4py import PETSc
 
 from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.extremes import largest
 from coilset.model.equilibrium.system.layout import Layout
+from coilset.model.runtime.kernels import njit
 
 
 class Resistance(Protocol):

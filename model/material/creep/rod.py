@@ -16,7 +16,6 @@ import math
 from collections import namedtuple
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import POWER, creep_strain, crept, passes
@@ -24,6 +23,7 @@ from coilset.model.material.law.functions import elasticity, functions
 from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.increment import GAMMA
 from coilset.model.material.point.rod import Vector, active, inner
+from coilset.model.runtime.kernels import njit
 
 WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²
 # A stage's end: stress, its equivalent σ and direction d, θ, the Creep of σ, ∂c/∂σ − θ at constant time; iterations,

@@ -8,12 +8,12 @@ import math
 from collections.abc import Iterable, Mapping
 
 import numpy as np
-from numba import njit
 
 from coilset.model.material.identification.experiments import COMPONENTS, Test
 from coilset.model.material.law import functions as fn
 from coilset.model.material.law.parts import CREEP_ENTRIES, Parts
 from coilset.model.material.point.increment import advance
+from coilset.model.runtime.kernels import njit
 
 SUBSTEP = 1e-3  # maximum strain increment of the simulation
 LARGE = 1e3  # residual of a law that cannot follow a test

@@ -5,13 +5,13 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
-from numba import njit
 from scipy.optimize import least_squares
 
 from coilset.model.base.errors import InputError
 from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, Variables, moved_by
 from coilset.model.material.law import functions as fn
+from coilset.model.runtime.kernels import njit
 
 FLOWING = 5e-4  # length of the plastic path from which a reading tells k²: before it, the elastic moduli decide
 READINGS = 10  # that a fit needs at least

@@ -14,7 +14,8 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 ITERATIONS, TOLERANCE = 30, 1e-12  # of the other stresses, over the greatest stress or modulus times strain
 ALONG, ACROSS = np.array([0, 3, 4]), np.array([1, 2, 5])  # of 11, 22, 33, 12, 13, 23

@@ -10,10 +10,11 @@ the interval: that leaves an error of 3e-17 of exp(r), and of 8e-17 of exp(r) âˆ
 from typing import Any
 
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic
 
 from coilset.model.base.kernel import INLINE
+from coilset.model.runtime.kernels import njit
 
 LEAST = -700.0  # smaller arguments are taken for this one, exp(x) = 1e-304; none are greater than 700
 LOG2_E = 1.4426950408889634

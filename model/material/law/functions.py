@@ -8,10 +8,10 @@ The rows are followed by the curves of k² that are given by points (`coilset.mo
 import math
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.exponential import exp
+from coilset.model.runtime.kernels import njit
 
 # k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b*.
 Functions = tuple[float, float, float, float, float, float]

@@ -17,7 +17,8 @@ from ctypes import c_int, c_void_p
 from typing import Any
 
 import numpy as np
-from numba import njit
+
+from coilset.model.runtime.kernels import njit
 
 STATES = 10  # numbers of the state before the internal state variables: four that are reported, and six strains
 CONSISTENT = 4.0

@@ -17,13 +17,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numba import carray, cfunc, njit, types
+from numba import carray, cfunc, types
 
 from coilset.model.material import library
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.own_checks import check_law
 from coilset.model.material.law.parts import OwnPoints
+from coilset.model.runtime.kernels import njit
 
 Update = Callable[..., bool]
 REPORTED = 4  # B11, B12, B13 and b

@@ -17,7 +17,6 @@ import math
 from collections import namedtuple
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import POWER
@@ -27,6 +26,7 @@ from coilset.model.material.point.increment import AHEAD, GAMMA, ROD
 from coilset.model.material.point.overstress import ROOT
 from coilset.model.material.point.rod import Vector, add, inner, scaled
 from coilset.model.material.point.spin import crossing_of_spin
+from coilset.model.runtime.kernels import njit
 
 # A stage at D: k and its slope in b*, λ, q, n, |n| and its slope in D; f: 1/(1 + (c + Z) λ); slopes of n in q (a) and,
 # with the other sign, in λ (h).

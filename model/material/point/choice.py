@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit, types
+from numba import types
 from numba.extending import overload
 
 from coilset.model.base.kernel import KERNEL
@@ -21,6 +21,7 @@ from coilset.model.material.point import rod, solid
 from coilset.model.material.point.back_stresses import applies, flow_of_rod
 from coilset.model.material.point.increment import advance
 from coilset.model.material.point.rod_rows import return_map_points
+from coilset.model.runtime.kernels import njit
 
 
 def rod_points(

@@ -13,7 +13,6 @@ import math
 from collections import namedtuple
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import POWER, creep_strain, passes
@@ -56,6 +55,7 @@ from coilset.model.material.point.stage import (
     inner,
     solve,
 )
+from coilset.model.runtime.kernels import njit
 
 # What an increment is made of. h: time of creep; reference: ṗ₀ Δt, 0 without overstress; temperature at its start, and
 # its change; heating, work: as in `Span`; expansion: α of it in the rod; fading: see

@@ -10,9 +10,8 @@ With the plastic strain p of a stage and ρ = ṗ₀ Δt of its time, p = ρ (v 
 
 import math
 
-from numba import njit
-
 from coilset.model.base.kernel import KERNEL
+from coilset.model.runtime.kernels import njit
 
 MAX_ITERATIONS = 40
 ROOT = math.sqrt(2.0 / 3.0)

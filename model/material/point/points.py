@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.base.kernel import KERNEL
@@ -13,6 +12,7 @@ from coilset.model.material.law.law import Law
 from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.choice import advance_points, solid_point
 from coilset.model.material.point.local import FAILED, TOO_HOT
+from coilset.model.runtime.kernels import njit
 
 SMALLEST_SUBSTEP = 1e-9
 

@@ -8,7 +8,6 @@ converge, are marked and left to `return_map`, point by point, as are temperatur
 """
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.functions import N_ROWS, NODES, ROWS_START, elasticity, hardening, with_deviation
@@ -39,6 +38,7 @@ from coilset.model.material.point.rod import (
     return_map,
     softening,
 )
+from coilset.model.runtime.kernels import njit
 
 GROUP = 64  # points processed together
 NEWTON = 8  # iterations at most

@@ -32,13 +32,13 @@ import math
 from collections import namedtuple
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import creep_strain, crept
 from coilset.model.material.law.functions import EXPONENT, functions
 from coilset.model.material.law.parts import Parts, saturation
 from coilset.model.material.point.overstress import ROOT, of_work
+from coilset.model.runtime.kernels import njit
 
 # A stage's data. h: time of creep; reference: ρ, 0 without overstress; temperature, at b = work; heating: of
 # the temperature by b; expansion: of the rod's axial strain by b; deviates: κ ≠ 0.

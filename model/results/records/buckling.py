@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from math import hypot, inf, isfinite, nan
 
 import numpy as np
-from numba import njit
 
 from coilset.model.results.records.record import Step
+from coilset.model.runtime.kernels import njit
 
 SIDEWAYS = 0.05  # of the mean diameter: an axis that has deflected this far has buckled, however gradually
 NEAR = 0.95  # of the critical travel: an earlier deflection is due to ends that are not a whole number of turns apart

@@ -6,7 +6,6 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
@@ -18,6 +17,7 @@ from coilset.model.equilibrium.system.system import System
 from coilset.model.results.records.record import ForceLine, SeatReaction, SeatReactions
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.kernels import exponential
+from coilset.model.runtime.kernels import njit
 
 ROUNDING = 2e-13  # axial forces below this part of E A are rounding, whatever came before
 ON_LINE = tuple(item.name for item in fields(SeatReactions) if item.name.startswith(("line_", "damper_")))

@@ -1,12 +1,12 @@
 """Checks of a compressed spring's shape: has it left a seat, have coils slipped past each other?"""
 
 import numpy as np
-from numba import njit
 
 from coilset.meshes.springs.ends import touching_pitch
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.contact.seat import Seat
 from coilset.model.equilibrium.system.system import System
+from coilset.model.runtime.kernels import njit
 
 PASSING = 0.5  # of the wire diameter: with a smaller touching pitch, coils pass each other by their shape
 
