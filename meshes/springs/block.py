@@ -14,35 +14,72 @@ greater of two:
   neighbours, come to rest on each other.
 """
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
+from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.ends import touching_pitch
-
-if TYPE_CHECKING:
-    from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.piecewise import PiecewisePolynomial
 
 MERIDIANS = 64
 
 
-def block_height(spring: "Spring") -> float:
+class Coil(Protocol):
+    """The properties of a spring that determine where it is solid; see `coilset.meshes.springs.geometry.Spring`."""
+
+    @property
+    def section(self) -> Boundary | None:
+        """Of wire that is not round."""
+
+    @property
+    def turns(self) -> float:
+        """Number of turns."""
+
+    @property
+    def breaks(self) -> np.ndarray:
+        """Turns between which its functions are single polynomials."""
+
+    @property
+    def body_length(self) -> float:
+        """Distance between two planes that touch it, mm."""
+
+    @property
+    def height(self) -> PiecewisePolynomial:
+        """Of the centre line over the turn, mm."""
+
+    def mean_radius(self, turn: np.ndarray | float) -> np.ndarray:
+        """Of the centre line, mm."""
+
+    def wire_diameter(self, turn: np.ndarray | float) -> np.ndarray:
+        """Or height of the wire, mm."""
+
+    def aside(self, low: np.ndarray | float, up: np.ndarray | float) -> np.ndarray:
+        """By how much the coil at turns `up` is farther from the axis than that at `low`, mm."""
+
+    def seat_distance(self, turn: np.ndarray | float, end: str) -> np.ndarray:
+        """From the centre line to the surface that faces the `bottom` or `top` seat, mm."""
+
+
+def block_height(spring: Coil) -> float:
     """Distance between the seats at which a spring is solid, mm."""
     return max(_each_on_the_next(spring), _highest_stack(spring))
 
 
-def _each_on_the_next(spring: "Spring") -> float:
+def _each_on_the_next(spring: Coil) -> float:
     ends = spring.body_length - (spring.height(spring.turns) - spring.height(0.0))
     n = spring.turns
     if n <= 1.0:  # no coil has a next one; the pitch of a coil that goes on
-        mean = 0.5 * (spring.wire(0.0) + spring.wire(n))
-        return float(n * touching_pitch(mean, (spring.radius(n) - spring.radius(0.0)) / n, spring.section) + ends)
+        mean = 0.5 * (spring.wire_diameter(0.0) + spring.wire_diameter(n))
+        return float(
+            n * touching_pitch(mean, (spring.mean_radius(n) - spring.mean_radius(0.0)) / n, spring.section) + ends
+        )
 
     def rise(turn: np.ndarray | float) -> np.ndarray:
         """From each turn t ≤ n − 1 to the next where the two touch, mm."""
         t = np.asarray(turn, dtype=float)
-        wire = 0.5 * (spring.wire(t) + spring.wire(t + 1.0))
+        wire = 0.5 * (spring.wire_diameter(t) + spring.wire_diameter(t + 1.0))
         return touching_pitch(wire, spring.aside(t, t + 1.0), spring.section)
 
     marks = np.unique(np.concatenate([spring.breaks, spring.breaks - 1.0]))  # of r and d at t, and at t + 1
@@ -51,7 +88,7 @@ def _each_on_the_next(spring: "Spring") -> float:
     return float(within + 0.5 * (rise(0.0) + rise(n - 1.0)) + ends)
 
 
-def _highest_stack(spring: "Spring") -> float:
+def _highest_stack(spring: Coil) -> float:
     """Greatest height of the wires that lie above each other on any meridian, mm."""
     meridians = np.append(np.arange(MERIDIANS) / MERIDIANS, spring.turns % 1.0)  # the last one: of the top tip
     t = np.arange(int(spring.turns) + 1)[:, None] + meridians

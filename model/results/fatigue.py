@@ -12,8 +12,7 @@ import numpy as np
 from coilset.model.base.warning import Warning
 from coilset.model.fatigue.cycle import Cycle, tensors
 from coilset.model.fatigue.strength import Strength
-from coilset.model.results.records.record import Result, Setup
-from coilset.model.results.records.working import Working, WorkingState
+from coilset.model.results.records.record import Result, Setup, Working, WorkingState
 from coilset.model.section import surface
 
 

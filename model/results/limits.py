@@ -1,7 +1,6 @@
 """Limits of results: between which values they must be, and whether a run meets them."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
@@ -10,6 +9,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.limits import GRADE, About, AnyLimit
+from coilset.model.results.records.record import Limit
 from coilset.model.results.records.summary_entries import NUMBERS
 from coilset.model.results.records.units import quantity, without_unit
 from coilset.model.results.records.working import is_working_number, names_of, place_of
@@ -18,32 +18,6 @@ from coilset.model.standards.cylinder import Cylinder
 
 OTHERS = {"free_length": "free_length_after_mm", "rate": "rate_30_70_after_N_per_mm"}
 """Results by their names on a drawing, where it means the finished spring."""
-
-
-@dataclass(frozen=True)
-class Limit:
-    """Limits of one result.
-
-    Attributes:
-        name: of the result in the summary.
-        low, high: between which it must be.
-        source: where they are from, in words.
-    """
-
-    name: str
-    low: float
-    high: float
-    source: str
-
-    @property
-    def words(self) -> str:
-        """The result, with its unit."""
-        words, unit = quantity(self.name)
-        return f"{words}, {unit}"
-
-    def margin(self, value: float) -> float:
-        """Distance from the nearer limit; negative outside."""
-        return min(value - self.low, self.high - value)
 
 
 def case_limits(case: Case, spring: Spring, shear_modulus: float) -> tuple[Limit, ...]:

@@ -1,83 +1,25 @@
-"""From a case to its records: the parts made by coilset.model.run.build go through the load program."""
+"""From a case to its records: the load program, the working states after it, and the errors of the numbers."""
 
-import logging
-import math
-from collections.abc import Callable, Sequence
-from typing import Any, Literal, Protocol
+from collections.abc import Callable
 
-import numpy as np
 from mpi4py import MPI
 
-from coilset.model.base.entry import check_entries
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.body.state import State
 from coilset.model.case import Case
-from coilset.model.case.phases import AnyPhase, Phase, TimePhase, drives_at, heads_of
-from coilset.model.case.targets import check_own_law, check_steps, check_targets, check_times, check_working
-from coilset.model.contact.base import Contact
-from coilset.model.contact.build import build_contacts, seats_at
-from coilset.model.contact.curve import CentreLine, WirePoints
-from coilset.model.equilibrium.path.program import LoadProgram, ProgramPosition, Stage, StepTaken
-from coilset.model.equilibrium.path.stability import Stability, mode_in_words
 from coilset.model.equilibrium.path.step_control import StepSizes
-from coilset.model.equilibrium.system.layout import LineLayout
-from coilset.model.equilibrium.system.system import System
-from coilset.model.manufacture.initial_state import give_past
 from coilset.model.material.law.law import Law
-from coilset.model.material.law.own import OwnLaw
-from coilset.model.results.files.checkpoint import Saved
-from coilset.model.results.records.record import Result, Snapshot, Step
-from coilset.model.run.balance import imbalance
-from coilset.model.run.build import (
-    build_continuation,
-    build_control,
-    build_heat,
-    build_method,
-    build_newton,
-    build_setup,
-    build_wire,
-)
+from coilset.model.results.records.record import Result, Step
 from coilset.model.run.error_estimates import estimated, without_errors
-from coilset.model.run.recorder import Recorder
+from coilset.model.run.load_history import FurtherContacts, LoadHistory, Save
 from coilset.model.run.working import working_states
-from coilset.model.standards.wires.law import case_law
-
-log = logging.getLogger("coilset.steps")
-FurtherContacts = Callable[[WirePoints, np.ndarray], Sequence[Contact]]
 
 
-class Save(Protocol):
-    """Keeps the state after each step, as coilset.model.results.files.checkpoint.Checkpoint.save."""
-
-    def __call__(self, state: State, layout: LineLayout, position: ProgramPosition, result: Result) -> object:
-        """Keep it; collective."""
-        ...
-
-
-class Analysis:
-    """A spring with its load program, ready to run.
+class Analysis(LoadHistory):
+    """A spring with all that is computed of it, ready to run.
 
     Args:
-        case: Case (`coilset.model.case.read_case`, or built in Python).
-        comm: MPI communicator.
-        detailed: also record the seats' reactions and the wire after every step.
-        threads: of each rank, see coilset.model.runtime.threads.
         estimates: estimate the errors of mesh, section and contact at the end of a run, see
-            coilset.model.run.error_estimates; never with `accuracy: none`.
-        law: in the place of the case's material; None: that.
-        contacts: from the wire's points and the positions of the stations, shape (n, 3), mm, further kinds of contact;
-            the errors of mesh, section and contact are then not estimated.
-        steps: how long steps are, StepSizes.
-
-    Raises:
-        InputError: if the spring or the material cannot be built.
-
-    Attributes:
-        setup: Setup of the records.
-        result: Result up to now.
-        threads: of each rank.
-        further: law, contacts and steps as given, by their names.
-        system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
+            coilset.model.run.error_estimates; never with `accuracy: none` or further contacts.
+        case, comm, detailed, threads, law, contacts, steps: as in LoadHistory.
     """
 
     def __init__(
@@ -91,72 +33,8 @@ class Analysis:
         contacts: FurtherContacts | None = None,
         steps: type[StepSizes] = StepSizes,
     ) -> None:
-        self.case, self.comm, self.threads = case, comm, threads
-        self.further: dict[str, Any] = {"law": law, "contacts": contacts, "steps": steps}
+        super().__init__(case, comm, detailed, threads, law, contacts, steps)
         self._estimates = estimates and case.steps_error is not None and contacts is None
-        self.spring = spring = case.spring.build()
-        self.law = case_law(case, spring) if law is None else law
-        if isinstance(self.law, OwnLaw):
-            check_own_law(case, self.law)
-        check_steps(case)
-        check_targets(case, spring, self.law.G)
-        check_working(case, spring, self.law.G)
-        check_times(case, self.law)
-        wire = build_wire(case, spring, self.law, comm, threads)
-        self.rod = wire.rod
-        self.heat = build_heat(case, self.rod)
-        coiling_diameter = give_past(self.rod, case.spring)
-        seats = case.seats if case.ends == "seats" else None
-        moving = frozenset(end for phase in case.loading for end in heads_of(phase))
-        kinds = build_contacts(case.contact, seats, spring, wire.turns, self.rod.line.stations, self.law.E, moving)
-        if contacts is not None:
-            radius, lengths = 0.5 * spring.wire_diameter(wire.turns), np.diff(spring.arc_length(wire.turns))
-            points = CentreLine(wire.turns, radius, lengths).points()
-            kinds.extend(contacts(points, self.rod.line.stations))
-        self.layout = LineLayout(self.rod)
-        self.system = System(self.rod, self.layout, kinds, seats_at(spring.free_length))
-        least_radius = float(wire.radius.min())
-        self.newton = build_newton(case, self.system, least_radius)
-        self.control = build_control(case, spring, self.system, wire.turns)
-        self.stability = Stability(self.newton.iteration)
-        self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
-        self.continuation.refusal, self.continuation.cause = self._passed, self._gives_way
-        self.continuation.steps = steps(case.solver.control.steps)
-        self.program = LoadProgram(self.control, self.continuation)
-        self.setup = build_setup(case, spring, wire, kinds, coiling_diameter)
-        self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.stability, detailed)
-
-    @property
-    def result(self) -> Result:
-        """Results of the run so far."""
-        return self.recorder.result
-
-    def snapshot(self, name: str) -> Snapshot:
-        """The spring in its present state, gathered on rank 0; collective."""
-        return self.recorder.snapshot(name)
-
-    def _passed(self) -> str | None:
-        """The reason why the trial state is impossible (the heads have passed each other), or None; collective."""
-        height, wire = self.control.trial_height, 2.0 * self.rod.largest_radius
-        if height >= wire:
-            return None
-        return f"the heads would be {height:.4g} mm apart, less than the wire's {wire:.4g} mm"
-
-    def _gives_way(self) -> str:
-        """Where and how the wire gives way most easily at the last equilibrium, in words; collective."""
-        self.system.restore()
-        mode = self.stability.displacements(self.stability.weakest(self.newton.iteration.load).mode)
-        return "" if not np.isfinite(mode).all() else mode_in_words(mode, self.setup.turns)
-
-    def use_method(self, name: str) -> None:
-        """Switch to another iteration method.
-
-        Raises:
-            InputError: if there is no such method, or PETSc rejects an option; the method is then unchanged.
-        """
-        self.newton.iteration.use(build_method(self.case, self.layout, name))
-
-    # ---- the run ---------------------------------------------------------------------------------------------------
 
     def run(
         self,
@@ -164,165 +42,8 @@ class Analysis:
         save: Save | None = None,
         touched: Callable[[], object] = lambda: None,
     ) -> Result:
-        """Run the load program; a resumed analysis continues from its checkpoint; collective.
-
-        Args:
-            report: called with each converged Step.
-            save: keeps the state after each step, see Checkpoint.save.
-            touched: called after the first touch, which gives the initial rate.
-
-        Returns:
-            Result, also available as `self.result`, with all steps so far if the run is interrupted.
-
-        Raises:
-            SolveError: no equilibrium was found; the state is that of the last converged step.
-        """
-        try:
-            if not self.result.snapshots:
-                self._settle_coils()
-                self.recorder.begin(self.initial_rate())
-            touched()
-            for number in range(self.program.number, len(self.case.loading)):
-                for taken in self.program.run(self.stage(number)):
-                    settled = self._flow_of_heat(number, taken)
-                    step = self.recorder.record(number, settled, self.case.loading)
-                    self._keep(save)
-                    report(step)
-                self.recorder.add_snapshot(self.program.stage.label)
-                self.program.begin(number + 1)
-                self._keep(save)
-        except (SolveError, KeyboardInterrupt):
-            self.system.restore()
-            self.recorder.add_snapshot("last equilibrium")
-            raise
+        """The load program, as `LoadHistory.run`, then the working states and the errors; collective."""
+        super().run(report, save, touched)
         self.recorder.add_working(working_states(self))
         self.recorder.end(estimated(self) if self._estimates and self.result.steps else without_errors(self.result))
         return self.result
-
-    def _settle_coils(self) -> None:
-        """Let coils that are wound onto each other carry the tension of their wire, without a load on the spring.
-
-        Raises:
-            SolveError: if they find no equilibrium.
-        """
-        if "initial_tension" not in self.case.past:
-            return
-        outcome = self.continuation.attempt(self.control.to_force(0.0))
-        if not outcome.converged:
-            raise SolveError(f"the wound coils find no equilibrium without load: {outcome.reason}")
-        self.control.begin_here()
-        self.program.begin(0)
-
-    def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:
-        """Let heat flow for the time that the last step took; the step, with what that cost."""
-        phase = self.case.loading[number]
-        if self.heat is not None and self.heat.creeps:
-            self.heat.catch_up()
-            return self.program.settle(taken)
-        if self.heat is not None and isinstance(phase, Phase) and phase.seconds is not None:
-            self.heat.advance(taken.part * phase.seconds)
-        return taken
-
-    def redirect(self, phase: Phase) -> None:
-        """Change the target of the phase in progress; the case holds the new one from now on.
-
-        Raises:
-            InputError: if no spring can reach it, its steps are automatic and errors are not estimated, or it takes no
-                time although heat flows; then nothing changes.
-        """
-        number = min(self.program.number, len(self.case.loading) - 1)
-        loading = [phase if k == number else other for k, other in enumerate(self.case.loading)]
-        case = check_entries(dict(self.case) | {"loading": loading}, Case)
-        check_steps(case)
-        check_targets(case, self.spring, self.law.G)
-        self.case = case
-        self.program.redirect(self.stage(number))
-
-    def resume(self, saved: Saved) -> None:
-        """Restore the state of a checkpoint; collective.
-
-        Raises:
-            InputError: if its arrays are not those of this analysis; then nothing changes.
-        """
-        self._check(saved)
-        for name, field in self.system.state.items():
-            self.layout.take(field, saved.arrays[name])
-        self.system.restore()
-        steps, continuation = saved.result.steps, self.continuation
-        continuation.number, continuation.negative_pivots = len(steps), steps[-1].negative_pivots if steps else 0
-        self.program.position = saved.position
-        if saved.changed:
-            self.program.begin(saved.position.stage)
-        self.recorder.resume(saved.result)
-
-    def _check(self, saved: Saved) -> None:
-        """Reject arrays that are missing, of another shape, or not finite; collective."""
-        expected = {name: self.layout.natural(field) for name, field in self.system.state.items()}
-        problem, like = None, self.snapshot("like")
-        if self.comm.rank == 0:
-            pairs = [(name, saved.arrays.get(name), values) for name, values in expected.items()]
-            pairs += [
-                (f"{shot.name}: {name}", getattr(shot, name), values)
-                for shot in saved.result.snapshots
-                for name, values in vars(like).items()
-                if isinstance(values, np.ndarray)
-            ]
-            problem = next(
-                (
-                    name
-                    for name, found, values in pairs
-                    if found is None or found.shape != values.shape or not np.isfinite(found).all()
-                ),
-                None,
-            )
-        problem = self.comm.bcast(problem)
-        if problem:
-            raise InputError(
-                "the checkpoint's array is missing or not of this spring; use --overwrite instead of "
-                "--resume to start again",
-                problem,
-            )
-
-    def stage(self, number: int, loading: Sequence[AnyPhase] = ()) -> Stage:
-        """A phase of the case, or of another `loading`, by its number, in the form that the load program expects."""
-        loading = loading or self.case.loading
-        phase, drives = loading[number], drives_at(loading, number)
-        steps = tuple(phase.steps) if isinstance(phase.steps, list) else phase.steps
-        if isinstance(phase, TimePhase):
-            time = phase.duration
-            return Stage(time.keep, None, steps, phase.label, time.length, phase.temperature, drives=drives)
-        timeless = self.heat is not None and not self.heat.creeps  # heat flows after each step
-        hours = 0.0 if timeless else (phase.seconds or 0.0) / 3600.0
-        kind: Literal["height", "force"] = "height"
-        value: float | None = None
-        if phase.drives_axially:
-            kind, value = phase.goal(self.spring.free_length, self.spring.block_height)
-        elif number:  # as the last phase left it
-            kind = self.stage(number - 1, loading).kind
-        return Stage(kind, value, steps, phase.label, hours, even=True, drives=drives)
-
-    def _keep(self, save: Save | None) -> None:
-        if save is not None:
-            save(self.system.state, self.layout, self.program.position, self.result)
-
-    def initial_rate(self) -> float:
-        """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm; collective.
-
-        NaN if no equilibrium is found there: the load program uses other steps and may still succeed.
-        """
-        x = self.system.state["x"]
-        travel = self.continuation.control.probe * self.spring.free_length
-        tips = [station for station, _ in self.control.tips.values()]
-        before = np.ptp(self.layout.gather(x.equilibrium)[tips, 2])
-        outcome, (force, after) = self.continuation.probe(
-            self.control.to_height(self.control.height - travel),
-            lambda: (self.control.trial_force, np.ptp(self.layout.gather(x.trial)[tips, 2])),
-        )
-        if not outcome.converged:
-            log.warning("the initial rate is unknown: no equilibrium at the first touch (%s)", outcome.reason)
-            return math.nan
-        return float(force / (before - after))
-
-    def imbalance(self) -> tuple[float, float]:
-        """Largest imbalance over all cuts now, N and N mm; see coilset.model.run.balance; collective."""
-        return imbalance(self.snapshot("balance"), self.system, self.control)

@@ -25,7 +25,7 @@ import logging
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -40,12 +40,12 @@ from coilset.model.manufacture.initial_state import give_sections_past
 from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step
 from coilset.model.results.records.releases import Release, last_release
 from coilset.model.results.stresses import change_of_sign, shear_inside
+from coilset.model.run.load_history import LoadHistory
+from coilset.model.run.working import working_states
 from coilset.model.section.kinds import make_sections
+from coilset.model.section.outline import outline_of
 from coilset.model.section.rules import DiskRule, polar
 from coilset.model.standards.case_warnings import keeps_elastic_warping, warping_can_be_estimated
-
-if TYPE_CHECKING:
-    from coilset.model.run.analysis import Analysis
 
 log = logging.getLogger("coilset.steps")
 
@@ -63,16 +63,17 @@ RIGID = 1.5  # of dU/ds: with forty times the bedding, forces of seven springs r
 NOT_KNOWN = Errors(None, None, None)
 
 
-def estimated(analysis: "Analysis") -> Result:
+def estimated(analysis: LoadHistory) -> Result:
     """The result of a complete run with the errors of its numbers; collective.
 
     Where the companion finds no equilibrium, only the error by the steps is known, and the log says so.
     """
     result, comm = analysis.result, analysis.comm
     try:
-        companion = type(analysis)(coarse_case(analysis.case, result.steps), comm, False, estimates=False)
+        companion = LoadHistory(coarse_case(analysis.case, result.steps), comm, False)
         watch = _Watch(companion)
         companion.run(watch)
+        others = working_states(companion)
         surfaces = watch.surface_errors()
     except CoilsetError as error:
         log.info("mesh, section and contact: errors not estimated, the companion on half of the elements: %s", error)
@@ -80,7 +81,7 @@ def estimated(analysis: "Analysis") -> Result:
         return replace(without_errors(result), errors=errors)
     judged = _judged(analysis, companion, watch.seen, surfaces) if comm.rank == 0 else None
     steps, errors = comm.bcast(judged)
-    working = result.working and result.working.with_errors(companion.result.working)
+    working = result.working and result.working.with_errors(others)
     return replace(result, steps=steps, errors=errors, working=working)
 
 
@@ -150,7 +151,7 @@ class _Followed:
         kind, rule, degree: of these sections, as in `make_sections`.
     """
 
-    def __init__(self, companion: "Analysis", elements: int, kind: str, rule: DiskRule, degree: int) -> None:
+    def __init__(self, companion: LoadHistory, elements: int, kind: str, rule: DiskRule, degree: int) -> None:
         rod = companion.rod
         self.rod, self.comm, self.inside = rod, companion.comm, companion.setup.inside
         along = rod.line.element[: len(rod.radius)]  # the same elements on any number of ranks
@@ -219,17 +220,18 @@ class _Followed:
 class _Watch:
     """Follows the companion's sections and notes the energy of its contacts; collective."""
 
-    def __init__(self, companion: "Analysis") -> None:
+    def __init__(self, companion: LoadHistory) -> None:
         self.companion, self.comm = companion, companion.comm
         section, rule = companion.case.mesh.section, companion.rod.rule
         finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
-        if rule.outline is not None:
-            finer = rule.outline.rule(FINER_OUTLINE * len(rule))
+        outline = outline_of(rule)
+        if outline is not None:
+            finer = outline.rule(FINER_OUTLINE * len(rule))
         self.finer = _Followed(companion, FOLLOWED, section.kind, finer, section.degree)
         self.warping: _Followed | None = None
         case, law = companion.case, companion.law
-        if rule.outline and keeps_elastic_warping(case, companion.spring) and warping_can_be_estimated(case, law):
-            finer = rule.outline.rule(max(WARPING_POINTS, len(rule)))
+        if outline and keeps_elastic_warping(case, companion.spring) and warping_can_be_estimated(case, law):
+            finer = outline.rule(max(WARPING_POINTS, len(rule)))
             self.warping = _Followed(companion, WARPING, "warping", finer, WARPING_DEGREE)
         self.travel, self.seen = 0.0, list[_Seen]()
 
@@ -259,7 +261,7 @@ class _StepErrors:
 
 
 def _judged(
-    analysis: "Analysis", companion: "Analysis", seen: Sequence[_Seen], surfaces: tuple[float, float]
+    analysis: LoadHistory, companion: LoadHistory, seen: Sequence[_Seen], surfaces: tuple[float, float]
 ) -> tuple[tuple[Step, ...], RunErrors]:
     """The steps with their total errors, and the errors of the run's numbers; on rank 0."""
     setup, result = analysis.setup, analysis.result

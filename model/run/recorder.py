@@ -17,11 +17,19 @@ from coilset.model.equilibrium.path.stability import Stability, Weakest
 from coilset.model.equilibrium.system.heads import Heads
 from coilset.model.equilibrium.system.system import System
 from coilset.model.results.records.buckling import axis_offset, buckling
-from coilset.model.results.records.record import BucklingMode, Frame, Result, SeatReactions, Setup, Snapshot, Step
+from coilset.model.results.records.record import (
+    BucklingMode,
+    Frame,
+    Result,
+    SeatReactions,
+    Setup,
+    Snapshot,
+    Step,
+    Working,
+)
 from coilset.model.results.records.seat_reactions import faint_force, mean_torque, seat_reactions
 from coilset.model.results.records.shape import LeastRise, clearance
 from coilset.model.results.records.warnings import step_warnings
-from coilset.model.results.records.working import Working
 from coilset.model.rod.rod import Rod
 from coilset.model.section import surface
 

@@ -15,6 +15,7 @@ from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.ground import ground_sections, rim_rule
 from coilset.model.section.integration import FIBRES, section, update_points
+from coilset.model.section.outline import outline_of
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 from coilset.model.section.wire import BEND
@@ -61,7 +62,7 @@ class FibreSections:
         self.components += self.law_over_time.columns(self.components[3:6])
         self.y, self.z = np.ascontiguousarray(rule.points.T)
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
-        whole = rule.outline
+        whole = outline_of(rule)
         self.ground = ground_sections(
             placement, radius, curved, whole, lambda left: rule if left is whole else left.rule(len(rule))
         )

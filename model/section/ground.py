@@ -9,7 +9,7 @@ from scipy.interpolate import BarycentricInterpolator
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.section.integration import FIBRES
-from coilset.model.section.outline import WHOLE, Outlined, Section, Segment
+from coilset.model.section.outline import WHOLE, Outlined, Section, Segment, outline_of
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.shape import SHAPE
 
@@ -50,7 +50,7 @@ def cut_sections(placement: Placement, outline: Outlined | None = None) -> tuple
 
 def section_points(rule: DiskRule, placement: Placement) -> tuple[np.ndarray, np.ndarray]:
     """Points of all sections in wire radii, (n, g, points, 2), and their shares of the disk, (n, g, points)."""
-    which, cut = cut_sections(placement, rule.outline)
+    which, cut = cut_sections(placement, outline_of(rule))
     places = np.broadcast_to(rule.points, (*which.shape, *rule.points.shape)).copy()
     weights = np.broadcast_to(rule.weights, (*which.shape, len(rule))).copy()
     for section, at in zip(cut, np.argwhere(which >= 0), strict=True):

@@ -214,7 +214,7 @@ class Outlined(Section):
         rest = points - len(weights)
         places = np.concatenate([places, np.tile(weights @ places / weights.sum(), (rest, 1))])
         name = f"outline {rings} × {sum(along)}"
-        return DiskRule(places, np.concatenate([weights, np.zeros(rest)]), name, self)
+        return OutlinedRule(places, np.concatenate([weights, np.zeros(rest)]), name, self)
 
     def rim(self) -> np.ndarray:
         """See Section: where rays at equal angles from the y axis cross the curve's polygon."""
@@ -233,6 +233,18 @@ class Outlined(Section):
         places, weights = self.fine
         centre = weights @ places / weights.sum()
         return Basis.over(degree, places, weights, centre, np.diag(1.0 / np.abs(places - centre).max(axis=0)))
+
+
+@dataclass(frozen=True)
+class OutlinedRule(DiskRule):
+    """The points of a section that is no disk; the sum of the weights is its area over π."""
+
+    outline: Outlined
+
+
+def outline_of(rule: DiskRule) -> Outlined | None:
+    """The section whose points a rule has; None: a disk."""
+    return rule.outline if isinstance(rule, OutlinedRule) else None
 
 
 class Warping:

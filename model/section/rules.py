@@ -2,28 +2,19 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from coilset.model.section.outline import Outlined
 
 ON_AXIS = 1e-12  # below which a coordinate is the sine of π with its rounding
 
 
 @dataclass(frozen=True)
 class DiskRule:
-    """Points (y, z) of the unit disk, shape (points, 2), and their weights, shape (points,).
-
-    Attributes:
-        outline: section whose points they are, if it is no disk; the sum of the weights is its area over π.
-    """
+    """Points (y, z) of the unit disk, shape (points, 2), and their weights, shape (points,)."""
 
     points: np.ndarray
     weights: np.ndarray
     name: str
-    outline: "Outlined | None" = None
 
     def __len__(self) -> int:
         return len(self.weights)

@@ -80,14 +80,9 @@ class Inside:
         Returns:
             Shape (..., surface points), MPa.
         """
-        from coilset.model.section.around import shear_around  # compiled: not where results are only read
-
-        around, columns = np.empty(state.shape[:-1]), (components.index("t12"), components.index("t13"))
-        rows = state.reshape(-1, *state.shape[-2:])
-        shear_around(
-            rows, columns, *directions(state.shape[-2]), self.sign * math.cos(self.angle), around.reshape(len(rows), -1)
-        )
-        return around
+        cosine, sine = directions(state.shape[-2])
+        t12, t13 = (component(state, components, name) for name in ("t12", "t13"))
+        return self.sign * math.cos(self.angle) * (t13 * cosine - t12 * sine)
 
     def shear(self, state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
         """Shear stress at the inside, positive as in a compressed spring, shape of `state` without its last two."""

@@ -30,6 +30,7 @@ from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import condense, find_warping, strain_operator
 from coilset.model.section.ground import cut_sections
+from coilset.model.section.outline import outline_of
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 
@@ -78,7 +79,7 @@ class WarpingSections:
         self.radius, self.placement = radius, placement
         self.law_over_time = LawOverTime(law, parameters, temperature)
         self.components += self.law_over_time.columns(self.components[6:12])
-        outline = rule.outline
+        outline = outline_of(rule)
         basis = Basis.of_disk(degree) if outline is None else outline.basis(degree)
         self.which, cut = cut_sections(placement, outline)
         left, bases = [one.rule(len(rule)) for one in cut], [one.basis(degree) for one in cut]

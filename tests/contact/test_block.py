@@ -3,7 +3,7 @@
 from mpi4py import MPI
 
 from coilset.model.case import check
-from coilset.model.run import analysis as module
+from coilset.model.run import load_history
 from coilset.model.run.analysis import Analysis
 
 WIRE, TURNS, SLOPE = 2.0, 5.0, 1.1  # mm; turns; wires by which the radius changes a turn
@@ -28,7 +28,7 @@ def test_force_rises_as_a_wall_where_flanks_rest_on_each_other(monkeypatch):
     }
     case = check(data)
     assert case.spring.build().block_height == block
-    monkeypatch.setattr(module, "check_targets", lambda *_: None)  # it refuses the last one
+    monkeypatch.setattr(load_history, "check_targets", lambda *_: None)  # it refuses the last one
     result = Analysis(case, MPI.COMM_SELF).run()
     forces = {step.phase: step.force_N for step in result.steps}
     before = (forces[1] - forces[0]) / (above - wall)

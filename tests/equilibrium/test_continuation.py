@@ -157,7 +157,7 @@ def test_a_spring_that_is_solid_ends_there(make, monkeypatch):
     wire = 7.06
     shape = "{shape: double cone, ends: 42.41, middle: 61.42}"
     spring = f"spring={{wire_diameter: {wire}, mean_diameter: {shape}, turns: 2, pitch: 21.63}}"
-    monkeypatch.setattr("coilset.model.run.analysis.check_targets", lambda *_: None)
+    monkeypatch.setattr("coilset.model.run.load_history.check_targets", lambda *_: None)
     loading = f"[{{to: block}}, {{to: {{height: {2.0 * wire - 1.0}}}}}]"
     analysis = make(loading, spring, "mesh.elements_per_turn=16", "contact.bedding=5250")
     assert analysis.spring.block_height == pytest.approx(2.0 * wire, rel=1e-9)

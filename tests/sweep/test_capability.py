@@ -5,7 +5,8 @@ import pytest
 from scipy import stats
 
 from coilset.model.case import read_case
-from coilset.model.results.limits import Limit, case_limits, judged, limit_warnings
+from coilset.model.results.limits import case_limits, judged, limit_warnings
+from coilset.model.results.records.record import Limit
 from coilset.model.standards import en13906, en15800
 from coilset.model.sweep.figures.capability import _capability, _controlled, _plain, lines
 

@@ -14,7 +14,8 @@ from coilset.model.figures.panels.goodman import goodman
 from coilset.model.figures.panels.panel import GREY, Panel, Trace, axis, curve
 from coilset.model.report.document.view import Drawing, Level, view
 from coilset.model.report.document.words import Words
-from coilset.model.results.limits import Limit, case_limits
+from coilset.model.results.limits import case_limits
+from coilset.model.results.records.record import Limit
 from coilset.model.results.records.units import quantity
 from coilset.model.results.records.working import is_working_number, number_name
 from coilset.model.standards import en15800

@@ -14,6 +14,7 @@ from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section.ground import section_points
+from coilset.model.section.outline import outline_of
 from coilset.model.section.rules import SURFACE_POINTS
 
 DRAWN = 144  # points on the outline of a wire that is not round
@@ -59,9 +60,10 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "coil_turns": repr(float(setup.spring.turns)),
         },
     )
-    if rule.outline is not None:
+    outline = outline_of(rule)
+    if outline is not None:
         about = {"about": "points of the wire's outline, y and z in wire radii"}
-        corners = Variable(("corner", "direction"), rule.outline.boundary.points(DRAWN), about)
+        corners = Variable(("corner", "direction"), outline.boundary.points(DRAWN), about)
         data = data.merged(LabelledData({"outline": corners}, {}))
     others = (way_of_wire(result), pressure_along_wire(setup, result), _mode(result), working_surface(setup, result))
     for other in others:

@@ -1,9 +1,9 @@
 """The results of a run as frozen records, which writers, figures and checkpoints take."""
 
 import math
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -14,13 +14,10 @@ from coilset.model.base.warning import Warning
 from coilset.model.fatigue.strength import Strength
 from coilset.model.material.law.file import CreepTests
 from coilset.model.results.records.frame import Frame
+from coilset.model.results.records.units import quantity
 from coilset.model.rod.elements import Element
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
-
-if TYPE_CHECKING:  # its records hold those of here
-    from coilset.model.results.limits import Limit
-    from coilset.model.results.records.working import Working
 
 
 @dataclass(frozen=True)
@@ -277,6 +274,32 @@ class Limits:
 
 
 @dataclass(frozen=True)
+class Limit:
+    """Limits of one result.
+
+    Attributes:
+        name: of the result in the summary.
+        low, high: between which it must be.
+        source: where they are from, in words.
+    """
+
+    name: str
+    low: float
+    high: float
+    source: str
+
+    @property
+    def words(self) -> str:
+        """The result, with its unit."""
+        words, unit = quantity(self.name)
+        return f"{words}, {unit}"
+
+    def margin(self, value: float) -> float:
+        """Distance from the nearer limit; negative outside."""
+        return min(value - self.low, self.high - value)
+
+
+@dataclass(frozen=True)
 class Setup:
     """Description of a run: spring, mesh, load program, limits.
 
@@ -322,7 +345,7 @@ class Setup:
     force_line: ForceLine | None = None
     wound_solid: bool = False
     strength: Strength | None = None
-    bounds: "tuple[Limit, ...]" = ()
+    bounds: tuple[Limit, ...] = ()
 
     @property
     def slender(self) -> bool:
@@ -414,6 +437,65 @@ class RunErrors:
 
 
 @dataclass(frozen=True)
+class WorkingState:
+    """The spring at a working length or force.
+
+    Attributes:
+        kind, value: what the case gives, `length` in mm or `force` in N.
+        reason: why the spring cannot be there; empty if it is.
+        length, force, rate: of the spring there, mm, N and N/mm; NaN where it is not.
+        error: estimated size of the error of the force at a length, N, or of the length under a force, mm; None where
+            it is not known.
+        seats: SeatReactions; snapshot: Snapshot. None where the spring is not there.
+    """
+
+    kind: Literal["length", "force"]
+    value: float
+    reason: str = ""
+    length: float = float("nan")
+    force: float = float("nan")
+    rate: float = float("nan")
+    error: float | None = None
+    seats: SeatReactions | None = None
+    snapshot: Snapshot | None = None
+
+    @property
+    def label(self) -> str:
+        """In words."""
+        return f"{self.value:g} {'mm' if self.kind == 'length' else 'N'}"
+
+
+@dataclass(frozen=True, eq=False)
+class Working:
+    """All working states of a spring.
+
+    Attributes:
+        states: WorkingStates in the order of the file.
+        set: further set of the spring by going there, mm; None where the load program does not end with a release.
+    """
+
+    states: tuple[WorkingState, ...]
+    set: float | None = None
+
+    @property
+    def reached(self) -> tuple[WorkingState, ...]:
+        """Those at which the spring can be."""
+        return tuple(state for state in self.states if not state.reason)
+
+    def with_errors(self, other: "Working | None") -> "Working":
+        """With what another mesh's states differ by added to their errors; other None: they are not known."""
+        others = {(state.kind, state.value): state for state in other.reached} if other else {}
+
+        def total(state: WorkingState) -> float | None:
+            twin = others.get((state.kind, state.value))
+            if twin is None or state.error is None:
+                return None
+            return state.error + abs(twin.force - state.force if state.kind == "length" else twin.length - state.length)
+
+        return replace(self, states=tuple(replace(state, error=total(state)) for state in self.states))
+
+
+@dataclass(frozen=True)
 class Result:
     """Results of a run so far; `complete` is False if it ended before its program did.
 
@@ -437,7 +519,7 @@ class Result:
     warnings: tuple[Warning, ...] = ()
     mode: BucklingMode | None = field(default=None, repr=False)
     errors: RunErrors | None = None
-    working: "Working | None" = field(default=None, repr=False)
+    working: Working | None = field(default=None, repr=False)
 
     @property
     def greatest_force(self) -> float:

@@ -11,11 +11,11 @@ from coilset.model.results.fatigue import fatigue
 from coilset.model.results.limits import judged, limit_warnings
 from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates, tension, turning
-from coilset.model.results.records.record import Errors, Result, Setup, Snapshot
+from coilset.model.results.records.record import Errors, Result, Setup, Snapshot, WorkingState
 from coilset.model.results.records.releases import Release, is_turned, releases
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
-from coilset.model.results.records.working import LINE, WorkingState, plastic_rise, working_numbers
+from coilset.model.results.records.working import LINE, plastic_rise, working_numbers
 from coilset.model.results.stresses import (
     bending,
     beyond_coil,

@@ -6,11 +6,10 @@ length under 250 N.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from coilset.model.base.warning import Warning
-from coilset.model.results.records.record import Result, SeatReactions, Setup, Snapshot
+from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.section import surface
 
 FLOWS = 1e-5  # of the free length: a further set by less is not noticed
@@ -31,65 +30,6 @@ QUANTITIES = {
 NUMBER = re.compile(
     rf"({'|'.join(QUANTITIES)})_at_(\d+(?:\.\d+)?)(?:_({'|'.join(filter(None, QUANTITIES.values()))}))?"
 )
-
-
-@dataclass(frozen=True)
-class WorkingState:
-    """The spring at a working length or force.
-
-    Attributes:
-        kind, value: what the case gives, `length` in mm or `force` in N.
-        reason: why the spring cannot be there; empty if it is.
-        length, force, rate: of the spring there, mm, N and N/mm; NaN where it is not.
-        error: estimated size of the error of the force at a length, N, or of the length under a force, mm; None where
-            it is not known.
-        seats: SeatReactions; snapshot: Snapshot. None where the spring is not there.
-    """
-
-    kind: Literal["length", "force"]
-    value: float
-    reason: str = ""
-    length: float = float("nan")
-    force: float = float("nan")
-    rate: float = float("nan")
-    error: float | None = None
-    seats: SeatReactions | None = None
-    snapshot: Snapshot | None = None
-
-    @property
-    def label(self) -> str:
-        """In words."""
-        return f"{self.value:g} {'mm' if self.kind == 'length' else 'N'}"
-
-
-@dataclass(frozen=True, eq=False)
-class Working:
-    """All working states of a spring.
-
-    Attributes:
-        states: WorkingStates in the order of the file.
-        set: further set of the spring by going there, mm; None where the load program does not end with a release.
-    """
-
-    states: tuple[WorkingState, ...]
-    set: float | None = None
-
-    @property
-    def reached(self) -> tuple[WorkingState, ...]:
-        """Those at which the spring can be."""
-        return tuple(state for state in self.states if not state.reason)
-
-    def with_errors(self, other: "Working | None") -> "Working":
-        """With what another mesh's states differ by added to their errors; other None: they are not known."""
-        others = {(state.kind, state.value): state for state in other.reached} if other else {}
-
-        def total(state: WorkingState) -> float | None:
-            twin = others.get((state.kind, state.value))
-            if twin is None or state.error is None:
-                return None
-            return state.error + abs(twin.force - state.force if state.kind == "length" else twin.length - state.length)
-
-        return replace(self, states=tuple(replace(state, error=total(state)) for state in self.states))
 
 
 def is_working_number(name: str) -> bool:

@@ -26,8 +26,8 @@ from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Egg, Outline, Oval, Tube, rectangle
 from coilset.model.base.style import STYLE
 from coilset.model.material import library
-from coilset.model.section.outline import Outlined
-from coilset.model.section.rules import DiskRule, polar
+from coilset.model.section.outline import Outlined, OutlinedRule
+from coilset.model.section.rules import polar
 from coilset.model.slice.analysis import ACROSS, INSIDE
 from coilset.model.slice.slice import Coil
 from coilset.verification.sections.outlined_coil import OutlinedCoil
@@ -146,7 +146,7 @@ def coil(outline: Outline, index: float, points: int = 160, kind: str = "curved"
     mean, pitch, travel = size(outline, index)
     place = np.array([[PART * section.boundary.high[0], 0.0]])  # one more point, which weighs nothing
     rule = section.rule(points)
-    rule = DiskRule(np.concatenate([rule.points, place]), np.append(rule.weights, 0.0), rule.name, section)
+    rule = OutlinedRule(np.concatenate([rule.points, place]), np.append(rule.weights, 0.0), rule.name, section)
     one = OutlinedCoil(library.load("ck15"), kind, rule, height, mean, pitch, degree)
     forces = []
     for part in PARTS:
