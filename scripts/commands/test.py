@@ -49,10 +49,16 @@ def test(arguments: list[str]) -> int:
     else:
         status = run("tests of parts", parts) or run("tests of whole solves", [*pytest, *solves])
     for ranks in (2, 3):
-        command = [*mpirun(ranks), *pytest, "-m", "mpi"]
+        command = [*mpirun(ranks), *pytest, "-m", "mpi", *on_ranks()]
         with folder_of_mpirun() as folder:
             status = status or run(f"tests on {ranks} ranks", command, mpi_environment() | folder)
     return status
+
+
+def on_ranks() -> list[str]:
+    """The files with tests marked mpi: each rank imports what it collects, and all files take it ten seconds more."""
+    files = (REPOSITORY / "tests").rglob("test_*.py")
+    return sorted(str(file) for file in files if "mark.mpi" in file.read_text(encoding="utf-8"))
 
 
 @contextlib.contextmanager

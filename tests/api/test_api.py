@@ -8,9 +8,23 @@ import coilset.api
 from coilset.api import Case, InputError, Result, material
 
 
+def once(function):
+    """The function, called for the first of equal arguments only: many examples begin with the same spring."""
+    found = {}
+
+    def call(*given, **named):
+        key = repr(([getattr(one, "entries", one) for one in given], named))
+        if key not in found:
+            found[key] = function(*given, **named)
+        return found[key]
+
+    return call
+
+
 def test_every_example_runs(monkeypatch, example):
     monkeypatch.chdir(example.parent.parent)
-    found = doctest.testmod(coilset.api, optionflags=doctest.ELLIPSIS)
+    names = vars(coilset.api) | {"solve": once(coilset.api.solve), "design": once(coilset.api.design)}
+    found = doctest.testmod(coilset.api, globs=names, optionflags=doctest.ELLIPSIS)
     assert found.attempted > 25
     assert found.failed == 0
 

@@ -14,11 +14,12 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import InputError
 from coilset.model.runtime.processes import mpi_environment, mpirun
-from coilset.scripts import compiling
+from coilset.scripts import compiling, precompile
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.compiling import NOTICE, NOTICE_OF_PART, announce_compiling, compile_first, compiled
 
-SMALL = ["--set", "loading=[{to: {travel: 2}, steps: 1}]", "--set", "mesh.elements_per_turn=8", "--no-pictures"]
+COARSE = "loading=[{to: {travel: 2}, steps: 1}]", "mesh.elements_per_turn=8", "accuracy=none"
+SMALL = [*(word for entry in COARSE for word in ("--set", entry)), "--no-pictures"]
 
 
 @pytest.fixture
@@ -129,42 +130,29 @@ def used():
 
 """
 KERNELS = """
+from coilset.scripts.commands.report import report
 warm()
 compiled = used()
-for file in sys.argv[1:]:
+run, *files = sys.argv[1:]
+for file in files:
     case = read_case(file, [])
     phases = [f"loading.{number}.steps={2 if 'time' in file else 6}" for number in range(len(case.loading))]
     coarse = ["mesh.elements_per_turn=8", "mesh.section={radial: 2, angular: 8}"]
     Analysis(read_case(file, [*coarse, *phases]), MPI.COMM_SELF).run()
-guess(read_case(sys.argv[1], []), [])
-print(len(compiled), *sorted(used() - compiled), sep="\\n")
-"""
-
-
-def test_shipped_examples_need_no_kernel_that_is_not_compiled_before(example):
-    springs, time = (example.parent / name for name in ("springs", "time"))
-    files = [example, springs / "closed_and_ground.yaml", time / "relaxation.yaml"]
-    done = subprocess.run([sys.executable, "-c", USED + KERNELS, *files], capture_output=True, text=True, check=True)
-    count, *missing = done.stdout.splitlines()
-    assert int(count) > 8  # those that are called by Python; the others are in them
-    assert missing == []
-
-
-KERNELS_OF_PAGE = """
-from coilset.scripts.commands.report import report
-warm()
-compiled = used()
-report(sys.argv[1])
+guess(read_case(files[0], []), [])
+report(run)
 print(len(compiled), sorted(used() - compiled))
 """
 
 
-def test_the_page_of_a_run_needs_no_kernel_that_is_not_compiled_before(example, tmp_path):
-    solve(example, tmp_path / "run", False, SMALL[1::2], pictures=False, comm=MPI.COMM_SELF)
-    command = [sys.executable, "-c", USED + KERNELS_OF_PAGE, str(tmp_path / "run")]
+def test_shipped_examples_and_a_page_need_no_kernel_that_is_not_compiled_before(example, tmp_path):
+    solve(example, tmp_path / "run", False, COARSE, pictures=False, comm=MPI.COMM_SELF)
+    springs, time = (example.parent / name for name in ("springs", "time"))
+    files = [example, springs / "closed_and_ground.yaml", time / "relaxation.yaml"]
+    command = [sys.executable, "-c", USED + KERNELS, str(tmp_path / "run"), *files]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     count, missing = done.stdout.splitlines()[-1].split(maxsplit=1)
-    assert int(count) > 8
+    assert int(count) > 8  # those that are called by Python; the others are in them
     assert missing == "[]"
     assert (tmp_path / "run" / "report.html").is_file()
 
@@ -172,7 +160,8 @@ def test_the_page_of_a_run_needs_no_kernel_that_is_not_compiled_before(example, 
 KERNELS_OF_RANKS = """
 _run(short_case(*PRESSED))
 compiled = used()
-Analysis(read_case(sys.argv[1], ["mesh.section={radial: 2, angular: 8}"]), MPI.COMM_WORLD).run()
+steps = ["loading.0.steps=6", "loading.1.steps=3"]
+Analysis(read_case(sys.argv[1], ["mesh.section={radial: 2, angular: 8}", *steps]), MPI.COMM_WORLD).run()
 missing = MPI.COMM_WORLD.gather(sorted(used() - compiled))
 if missing is not None:
     print(len(compiled), missing)
@@ -210,10 +199,14 @@ def test_the_stages_of_compiling_are_shown(monkeypatch, tmp_path, capfd):
     assert lines[-1].startswith("coilset: compiled in ")
 
 
-def test_the_warming_names_each_stage_once():
-    command = "from coilset.scripts.precompile import warm; warm(report=print)"
-    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
-    lines = done.stdout.splitlines()
+def test_the_warming_names_each_stage_once(monkeypatch, tmp_path):
+    monkeypatch.setattr(precompile, "compiled", lambda stage: tmp_path / stage)
+    done, lines = [], []
+    for work in ("_run", "guess", "there_and_back"):
+        monkeypatch.setattr(precompile, work, lambda *_: done.append(len(lines)))
+    precompile.warm(report=lines.append)
+    assert done == [1, 2, 3, 4]
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(compiling.STAGES)
     numbers = [f" compiling {k} of {len(lines)}" for k in range(1, len(lines) + 1)]
     assert [line.split(":")[1] for line in lines] == numbers
     assert len(lines) == 4

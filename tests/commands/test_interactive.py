@@ -14,6 +14,7 @@ SETTINGS = [
     "mesh.elements_per_turn=8",
     "mesh.section={radial: 2, angular: 6}",
     "loading=[{to: {travel: 4}, steps: 4}, {to: {force: 0}, steps: 2}]",
+    "accuracy=none",
 ]
 
 
@@ -156,7 +157,7 @@ def test_stop_keeps_what_was_found(typed, undisturbed):
         ("to {travel: 1, force: 2}", "exactly one"),
         ("to blok", "block"),
         ("to {height: 20", "a target is block"),
-        ("to {height: 2}", "below the block height"),
+        ("to {height: 2}, steps: 1", "below the block height"),
         ("to block, steps: 0", "steps"),
         ("method magic", "magic"),
         ("?", HELP),

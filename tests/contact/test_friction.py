@@ -270,6 +270,7 @@ def analyse(friction, comm=MPI.COMM_SELF):
         "material": "elastic",
         "contact": {"friction": friction},
         "loading": loading,
+        "accuracy": "none",
         "seats": {"hold": "groove"},
     }
     return Analysis(check(data), comm)

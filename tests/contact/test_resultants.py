@@ -13,7 +13,7 @@ from coilset.model.results.files.folder import write_seats
 from coilset.model.results.records.record import SeatReactions
 from coilset.model.run.analysis import Analysis
 
-COARSE = ["mesh.section.rule=abramowitz9", "loading.0.steps=6", "loading.1.steps=4"]
+COARSE = ["mesh.section.rule=abramowitz9", "loading.0.steps=6", "loading.1.steps=4", "accuracy=none"]
 CLOSED = {
     "wire_diameter": 4.0,
     "mean_diameter": 32.0,

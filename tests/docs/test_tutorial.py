@@ -43,7 +43,7 @@ def folder(tmp_path_factory):
 
 
 def solved(case):
-    analysis = Analysis(case)
+    analysis = Analysis(case, estimates=False)
     result = analysis.run()
     return summarise(analysis.setup, result)
 

@@ -24,7 +24,12 @@ from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.log import run_log
 
 COMM = MPI.COMM_SELF
-SMALL = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 2}, steps: 2}]"]
+SMALL = [
+    "mesh.elements_per_turn=8",
+    "mesh.section.rule=abramowitz9",
+    "accuracy=none",
+    "loading=[{to: {travel: 2}, steps: 2}]",
+]
 
 
 class Stop(Exception):

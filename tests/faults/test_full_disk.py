@@ -51,7 +51,12 @@ def full(largest=LARGEST):
 
 @pytest.fixture(scope="module")
 def analysis(example):
-    settings = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 2}, steps: 2}]"]
+    settings = [
+        "mesh.elements_per_turn=8",
+        "mesh.section.rule=abramowitz9",
+        "accuracy=none",
+        "loading=[{to: {travel: 2}, steps: 2}]",
+    ]
     analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
     analysis.run()
     return analysis

@@ -14,7 +14,8 @@ from coilset.model.base.version import __version__
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 ROOMS = ("model", "meshes", "verification", "scripts", "examples")
-SHORT = ["--set", "loading=[{to: {travel: 4}, steps: 2}]", "--set", "mesh.elements_per_turn=8", "--no-pictures"]
+COARSE = "loading=[{to: {travel: 4}, steps: 2}]", "mesh.elements_per_turn=8", "accuracy=none"
+SHORT = [*(word for entry in COARSE for word in ("--set", entry)), "--no-pictures"]
 
 pytest.importorskip("pip")
 

@@ -48,6 +48,7 @@ def test_plastic_force_and_set_need_few_elements_on_the_curved_axis():
         case = {
             "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
             "ends": "clamped",
+            "accuracy": "none",
             "mesh": {"elements_per_turn": per_turn, "axis": axis, "section": {"kind": "plane"}},
             "loading": [{"to": {"travel": 10}, "steps": 10}, {"to": {"force": 0}, "steps": 2}],
         }

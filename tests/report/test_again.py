@@ -9,7 +9,8 @@ from coilset.model.report.page import complete
 from coilset.model.results.files.opened import open_run
 from coilset.scripts.commands.solve import solve
 
-SHORT = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 2}, steps: 1}]"]
+PROGRAM = "loading=[{to: {travel: 2}, steps: 1}]"
+SHORT = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "accuracy=none", PROGRAM]
 
 
 def test_the_material_stands_beside_the_case(example, tmp_path):

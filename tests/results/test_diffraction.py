@@ -56,7 +56,15 @@ def test_axial_and_hoop_stress_in_their_directions():
 def pressed():
     entries = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
     loading = [{"to": {"travel": 12.0}, "steps": 6}, {"to": {"force": 0}, "steps": 2}]
-    return Case({"spring": entries, "loading": loading, "ends": "clamped", "mesh": {"elements_per_turn": 12}})
+    return Case(
+        {
+            "spring": entries,
+            "loading": loading,
+            "ends": "clamped",
+            "mesh": {"elements_per_turn": 12},
+            "accuracy": "none",
+        }
+    )
 
 
 def test_a_run_has_its_own_surface_stress_at_a_point(pressed, tmp_path):

@@ -12,6 +12,7 @@ from coilset.scripts.commands.solve import solve
 CASE = """
 spring: {wire_diameter: 5, mean_diameter: 40, turns: 1.5, pitch: 12}
 ends: clamped
+accuracy: none
 loading: [{to: {travel: 4}, steps: 2}, {to: {force: 0}, steps: 1}]
 mesh: {elements_per_turn: 6, section: {radial: 2, angular: 4}}
 """

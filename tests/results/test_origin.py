@@ -15,7 +15,8 @@ from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.scripts.commands.solve import solve
 
-COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 3}, steps: 2}]"]
+PROGRAM = "loading=[{to: {travel: 3}, steps: 2}]"
+COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "accuracy=none", PROGRAM]
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,7 @@ from coilset.verification.cases.time.heat_along_wire import exact, fin, material
 from coilset.verification.study import Study
 
 CASE = {
+    "accuracy": "none",
     "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 60.0},
     "ends": "clamped",
     "temperature": 293.15,
@@ -68,7 +69,7 @@ def test_another_target_takes_time_too(warming):
     """Chosen in the middle of a run, without seconds: heat would stand still."""
     analysis = Analysis(check(CASE | {"material": warming}), MPI.COMM_SELF)
     with pytest.raises(InputError, match="takes no time, but heat flows"):
-        analysis.redirect(check({"to": {"travel": 5.0}}, model=Phase))
+        analysis.redirect(check({"to": {"travel": 5.0}, "steps": 1}, model=Phase))
     assert analysis.case.loading[0].to.travel == 45.0
 
 
@@ -97,7 +98,7 @@ def test_expansion_of_a_free_wire_bears_no_stress(warming, tmp_path):
     [
         ({"material": "ck15"}, "heat: plastic work does not warm 'ck15'"),
         ({"heat": None}, "loading.0.seconds: no heat flows, and 'warming' does not depend on the rate"),
-        ({"loading": [{"to": {"travel": 5.0}}]}, "loading.0 takes no time, but heat flows"),
+        ({"loading": [{"to": {"travel": 5.0}, "steps": 1}]}, "loading.0 takes no time, but heat flows"),
         ({"loading": [{"hold": {"hours": 1}}]}, "loading.0.hold: 'warming' does not creep; to let heat"),
         ({"mesh": {"section": {"kind": "warping"}}}, "heat needs sections of fibres"),
         ({"heat": {"conductivity": 0.0}}, "heat.conductivity: 0.0: must be greater than 0"),
@@ -106,5 +107,5 @@ def test_expansion_of_a_free_wire_bears_no_stress(warming, tmp_path):
 )
 def test_what_heat_cannot_be(changes, message, warming):
     with pytest.raises(InputError) as caught:
-        Analysis(check(CASE | {"material": warming} | changes), MPI.COMM_SELF)
+        Analysis(check(CASE | {"material": warming, "accuracy": 0.002} | changes), MPI.COMM_SELF)
     assert message in str(caught.value)

@@ -9,7 +9,8 @@ import pytest
 
 from coilset.model.runtime.switches import SAVINGS, enabled
 
-SMALL = ["--set", "mesh.elements_per_turn=8", "--set", "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}}]"]
+PROGRAM = "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}, steps: 2}]"
+SMALL = ["--set", "mesh.elements_per_turn=8", "--set", "accuracy=none", "--set", PROGRAM]
 
 
 @pytest.mark.parametrize("name", SAVINGS)

@@ -17,6 +17,7 @@ from coilset.verification.slice.references import ring_sector
 UP = (0.0, 1.0)
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 5.5, "pitch": 12.0, "end_coils": "closed and ground"}
 CASE = {
+    "accuracy": "none",
     "spring": SPRING,
     "material": "ck15",
     "mesh": {"elements_per_turn": 12},

@@ -19,6 +19,7 @@ CASE = {
     "ends": "clamped",
     "mesh": {"elements_per_turn": 8, "section": {"radial": 4, "angular": 12}},
     "loading": [{"to": {"travel": 6}, "steps": 3}, {"to": {"force": 0}, "steps": 2}],
+    "accuracy": "none",
 }
 RELIEF = {"temperature": 523.15, "minutes": 30.0}
 
@@ -127,7 +128,9 @@ def test_plane_sections_are_coiled_as_a_straight_bar_is():
     """With hardly any pitch the stress at the inside is that of the closed form with ε = κ y; it bears no force."""
     mesh = {"elements_per_turn": 8, "section": {"kind": "plane", "radial": 8, "angular": 20}}
     flat = {**SPRING, "pitch": 5.5}
-    spring = analysis_of(mesh=mesh, spring=flat, material="linear_isotropic", loading=[{"to": {"travel": 0.1}}])
+    spring = analysis_of(
+        mesh=mesh, spring=flat, material="linear_isotropic", loading=[{"to": {"travel": 0.1}, "steps": 1}]
+    )
     scale, law = np.array([1.0, 1.0, 1.0, 2.5, 2.5, 2.5]), spring.law
     assert np.abs(spring.rod.coefficients.s / scale).max() < 1e-3 * np.pi * 2.5**2
     bar = Bar(law.yield_stress, law.E, law.E * 2000.0 / (law.E + 2000.0), 2.5)

@@ -38,6 +38,7 @@ def test_heat(tmp_path):
             "temperature": 293.15,
             "ends": "clamped",
             "mesh": MESH,
+            "accuracy": "none",
             "heat": {"conductivity": 50.0, "convection": 200.0, "tips": 1.0},
             "loading": [
                 {"to": {"travel": 40.0}, "steps": 3, "seconds": 2.0},

@@ -12,7 +12,13 @@ from coilset.model.run.analysis import Analysis
 COLD = {"elasticity": {"G": 80000.0, "nu": 0.3}, "isotropic": {"k0_squared": 1.2e5, "a1": 0.0, "a2": 0.0, "a3": 1.0}}
 HOT = {"elasticity": {"G": 70000.0, "nu": 0.3}, "isotropic": {"k0_squared": 0.5e5, "a1": 0.0, "a2": 0.0, "a3": 1.0}}
 PROGRAM = "loading=[{to: {travel: 15}, steps: 4}, {to: {force: 0}, steps: 2}]"
-COARSE = ["ends=clamped", "mesh.elements_per_turn=8", "contact.bedding=2000", PROGRAM]  # default bedding: of cold wire
+COARSE = [
+    "accuracy=none",
+    "ends=clamped",
+    "mesh.elements_per_turn=8",
+    "contact.bedding=2000",
+    PROGRAM,
+]  # default bedding: of cold wire
 
 
 @pytest.fixture

@@ -24,8 +24,8 @@ SPRING = {
 }
 
 
-def analysis_of(loading, **changes):
-    return Analysis(check(SPRING | {"loading": loading} | changes), MPI.COMM_SELF)
+def analysis_of(loading, accuracy="none", **changes):
+    return Analysis(check(SPRING | {"loading": loading, "accuracy": accuracy} | changes), MPI.COMM_SELF)
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def slow(tmp_path):
 def test_relaxation_follows_the_steps_accuracy():
     """Automatic steps lose what many equal ones lose, within the asked 0.2 %; their times grow logarithmically."""
     fine = analysis_of([HOLD[0], HOLD[1] | {"steps": 48}]).run()
-    found = analysis_of([HOLD[0], HOLD[1] | {"steps": "auto"}])
+    found = analysis_of([HOLD[0], HOLD[1] | {"steps": "auto"}], 0.002)
     result = found.run()
     losses = [summarise(found.setup, run)["load_loss_percent"] for run in (fine, result)]
     assert losses[0] > 1.0
@@ -64,11 +64,11 @@ def test_steps_after_a_hold_take_no_time():
     """Released elastically, the spring's force is as uncertain as the hold left it, within 2 %; it was three times that
     when the finer path went back to the middle of the hold."""
     held = {"hold": {"hours": 1000}, "steps": 4}
-    steps = analysis_of([HOLD[0], held, {"to": {"travel": 5}, "steps": 2}]).run().steps
+    steps = analysis_of([HOLD[0], held, {"to": {"travel": 5}, "steps": 2}], 0.002).run().steps
     assert steps[4].steps_force_error_N > 0.1
     for step in steps[5:]:
         assert step.steps_force_error_N == pytest.approx(steps[4].steps_force_error_N, rel=0.02)
-    automatic = analysis_of([HOLD[0], held, {"to": {"travel": 5}}]).run().steps
+    automatic = analysis_of([HOLD[0], held, {"to": {"travel": 5}}], 0.002).run().steps
     assert len(automatic) - 5 < 16  # fewer than regular ones
 
 
@@ -162,7 +162,7 @@ def test_a_fast_press_bears_more_and_then_relaxes(viscous):
         ([{"hold": {"hours": 1}, "heat": {"to": 300, "hours": 1}}], {}, "give exactly one of hold or heat"),
         ([{"hold": {"hours": -1}}], {}, "loading.0.hold.hours: -1: must be greater than 0"),
         (
-            [{"to": {"travel": 1}, "seconds": 2}],
+            [{"to": {"travel": 1}, "steps": 1, "seconds": 2}],
             {},
             "loading.0.seconds: no heat flows, and 'creeping' does not depend on the rate",
         ),
@@ -170,12 +170,12 @@ def test_a_fast_press_bears_more_and_then_relaxes(viscous):
 )
 def test_what_time_cannot_be(loading, changes, message):
     with pytest.raises(InputError) as caught:
-        analysis_of(loading, **changes)
+        analysis_of(loading, 0.002, **changes)
     assert message in str(caught.value)
     assert ".yaml" not in str(caught.value)  # the entry is one of the case, not of the material's file
 
 
-COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9"]
+COARSE = ["accuracy=none", "mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9"]
 
 
 def test_examples_say_what_presetting_is_worth():
@@ -200,7 +200,7 @@ def test_the_error_of_fast_steps_is_known(viscous):
 
     def pressed(steps, **fast):
         phase = {"to": {"travel": 12}, "steps": steps} | fast
-        return analysis_of([phase], material=viscous, temperature=293.15).run().steps[-1]
+        return analysis_of([phase], 0.002, material=viscous, temperature=293.15).run().steps[-1]
 
     coarse, fine, still = pressed(6, seconds=1.0), pressed(24, seconds=1.0), pressed(6)
     error = fine.force_N + fine.steps_force_error_N - coarse.force_N
@@ -213,7 +213,7 @@ def test_the_error_of_steps_without_time_is_known_after_a_heating():
     press = {"to": {"travel": 14}, "steps": 8}
     heat = {"heat": {"to": 423.15, "minutes": 20, "keep": "force"}, "steps": 2}
     heated, warm = (
-        analysis_of(loading, temperature=start).run().steps[-8:]
+        analysis_of(loading, 0.002, temperature=start).run().steps[-8:]
         for loading, start in (([heat, press], 373.15), ([press], 423.15))
     )
     errors = [[step.steps_force_error_N for step in steps] for steps in (heated, warm)]
