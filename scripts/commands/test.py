@@ -36,7 +36,7 @@ def test(arguments: list[str]) -> int:
     """
     if not (REPOSITORY / "tests").is_dir():
         raise InputError("the tests are in coilset's repository; there, run scripts/coilset test", "test")
-    pytest = [sys.executable, "-m", "pytest", *arguments]
+    pytest = [sys.executable, "-m", "pytest", *(arguments or ["-q"])]
     if arguments:
         return run("tests on one rank", pytest)
     print("coilset: all tests, in serial and under MPI; some ten minutes on two cores", flush=True)
