@@ -215,7 +215,10 @@ class HeadTarget(Strict):
         units = {"sideways": "mm", "tilt": "°", "turn": "°", "side_force": "N", "tilt_moment": "N mm", "torque": "N mm"}
         words = []
         for name, values in self._given.items():
-            numbers = ", ".join("table" if isinstance(value, OverTravel) else f"{value:g}" for value in values)
+            numbers = ", ".join(
+                f"{value.values[0]:g} to {value.values[-1]:g}" if isinstance(value, OverTravel) else f"{value:g}"
+                for value in values
+            )
             words.append(f"{name.replace('_', ' ')} {numbers} {units[name]}")
         return ", ".join(words)
 

@@ -38,7 +38,7 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.manufacture.initial_state import give_sections_past
 from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step
-from coilset.model.results.records.releases import Release, last_release
+from coilset.model.results.records.releases import Release, is_turned, last_release
 from coilset.model.results.stresses import change_of_sign, shear_inside
 from coilset.model.run.load_history import LoadHistory
 from coilset.model.run.working import working_states
@@ -66,9 +66,12 @@ NOT_KNOWN = Errors(None, None, None)
 def estimated(analysis: LoadHistory) -> Result:
     """The result of a complete run with the errors of its numbers; collective.
 
-    Where the companion finds no equilibrium, only the error by the steps is known, and the log says so.
+    Where the companion finds no equilibrium, only the error by the steps is known, and the log says so. Those of a
+    spring in torsion are not estimated.
     """
     result, comm = analysis.result, analysis.comm
+    if is_turned(analysis.setup, result.steps):
+        return without_errors(result)
     try:
         companion = LoadHistory(coarse_case(analysis.case, result.steps), comm, False)
         watch = _Watch(companion)

@@ -9,7 +9,7 @@ from coilset.model.case import Case
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
 from coilset.model.standards.from_results import Found
-from coilset.model.standards.rate import tails_compliance
+from coilset.model.standards.rate import OnPoint, tails_compliance
 from coilset.model.standards.sheet import Sheet, pulled_lengths, pulls, rotations, working_lengths
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic, case_law
@@ -67,6 +67,7 @@ def case_sheet(
         rotations(case, spring),
         getattr(case.spring, "initial_tension", None) or 0.0,
         tails_compliance(spring, elastic.young_modulus, elastic.shear_modulus, bool(rotations(case, spring))),
+        OnPoint.of(spring, elastic.young_modulus, elastic.shear_modulus),
     )
     if lengths:
         return made

@@ -5,6 +5,7 @@ constant J and section modulus W of a straight wire (Saint-Venant), and the grea
 without pitch, over F D/(2 W). With d⁴ = 32 J/π, d³ = 16 W/π and d² = 4 A/π the formulas of round wire hold.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
@@ -17,7 +18,8 @@ from coilset.meshes.springs import functions
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.section.outline import Outlined, Section
 
-AROUND = 720  # points on the surface at which the greatest shear is sought
+AROUND = 720  # points on the surface at which the greatest shear is sought, and of the coils, for their moment
+VERTICAL = 1e-6  # sine of the angle to the axis below which an arm is axial
 
 
 @dataclass(frozen=True)
@@ -113,8 +115,8 @@ def torsion_rate(spring: Spring, shear_modulus: float) -> float:
 def tails_compliance(spring: Spring, young_modulus: float, shear_modulus: float, turned: bool) -> float:
     """Compliance of hooks and arms: mm/N along the axis at their held points, or rad/(N mm) about it.
 
-    Castigliano's ∫ (Mt²/(G J) + Mb²/(E I)) ds with the moment m = (x_h − x) × e of a pull e along the axis at the held
-    point x_h, or m = e of a torque; I = π d⁴/64, J = 2 I.
+    Castigliano's energy with the moment m = (x_h − x) × e of a pull e along the axis at the held point x_h, or m = e of
+    a torque.
 
     Args:
         spring: `Spring`.
@@ -125,17 +127,67 @@ def tails_compliance(spring: Spring, young_modulus: float, shear_modulus: float,
         return 0.0
     axis, corners = np.array([0.0, 0.0, 1.0]), spring.corners
 
-    def density(t: np.ndarray) -> np.ndarray:
+    def moment(t: np.ndarray) -> np.ndarray:
         held = spring.centre_line(np.where(t < 0.0, *spring.held))
-        moment = np.broadcast_to(axis, held.shape) if turned else np.cross(held - spring.centre_line(t), axis)
-        torque = np.sum(moment * spring.tangent(t), axis=-1)
-        bending = np.sum(moment**2, axis=-1) - torque**2
-        inertia = pi * spring.wire_diameter(t) ** 4 / 64.0
-        return (torque**2 / (2.0 * shear_modulus) + bending / young_modulus) / inertia * spring.speed(t)
+        return np.broadcast_to(axis, held.shape) if turned else np.cross(held - spring.centre_line(t), axis)
 
     first, last = spring.held
     parts = [corners[(corners >= first) & (corners <= 0.0)], corners[(corners >= spring.turns) & (corners <= last)]]
-    return float(sum(functions.integral(density, part).sum() for part in parts if len(part) > 1))
+    return sum(_compliance(spring, young_modulus, shear_modulus, moment, part) for part in parts)
+
+
+def _compliance(
+    spring: Spring, E: float, G: float, moment: Callable[[np.ndarray], np.ndarray], part: np.ndarray
+) -> float:
+    """Castigliano's ∫ (Mt²/(G J) + Mb²/(E I)) ds of round wire between the turns `part`; I = π d⁴/64, J = 2 I."""
+
+    def density(t: np.ndarray) -> np.ndarray:
+        m = moment(t)
+        torque = np.sum(m * spring.tangent(t), axis=-1)
+        bending = np.sum(m**2, axis=-1) - torque**2
+        inertia = pi * spring.wire_diameter(t) ** 4 / 64.0
+        return (torque**2 / (2.0 * G) + bending / E) / inertia * spring.speed(t)
+
+    return float(functions.integral(density, part).sum())
+
+
+@dataclass(frozen=True)
+class OnPoint:
+    """A torsion spring one of whose arms is held across by a point of its head.
+
+    The point's force F lies across the arm and the axis. With the torque M = F h about the axis the wire has the moment
+    (x_p − x) × F everywhere: none at the point, and up to (1 + D/(2 h)) M where the coil is farthest from the force.
+
+    Attributes:
+        lever: h, of the force about the axis, mm.
+        compliance: rotation by a torque, of the whole wire, rad/(N mm).
+        greatest: greatest moment of the coils about the axis over the torque.
+    """
+
+    lever: float
+    compliance: float
+    greatest: float
+
+    @classmethod
+    def of(cls, spring: Spring, young_modulus: float, shear_modulus: float) -> "OnPoint | None":
+        """None if no arm of the spring is on a point; E and G in MPa."""
+        held = [t for t, tail in zip(spring.held, spring.tails, strict=True) if tail is not None and tail.on_point]
+        if not held:
+            return None
+        point, along = (line(np.array(held))[0] for line in (spring.centre_line, spring.tangent))
+        across = np.cross([0.0, 0.0, 1.0], along)
+        if np.linalg.norm(across) < VERTICAL:  # an axial arm: across it and its radius
+            across = np.cross([0.0, 0.0, 1.0], point)
+        across /= np.linalg.norm(across)
+        lever = float(np.cross(point, across)[2])
+
+        def moment(t: np.ndarray) -> np.ndarray:
+            return np.cross(point - spring.centre_line(t), across / lever)
+
+        breaks = np.unique(np.concatenate([spring.corners, spring.breaks]))
+        compliance = _compliance(spring, young_modulus, shear_modulus, moment, breaks)
+        coil = np.linspace(0.0, spring.turns, AROUND)
+        return cls(abs(lever), compliance, float(np.abs(moment(coil)[..., 2]).max()))
 
 
 def pitch_compliance(angle: float, nu: float, ends: Literal["turning", "held"] = "turning") -> float:

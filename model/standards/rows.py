@@ -71,7 +71,8 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     yield Row("spring index w", s.index, "", "D/d", DERIVED)
     yield Row("active turns n", s.n, "", f"of {s.turns:g}, ends {s.ends}", GIVEN)
     yield Row("free length L0", s.length, "mm", "", GIVEN, after, f"set {set_mm:.4g} mm" if after else "")
-    yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, "the helix is longer by 1/cos α")
+    tails = f"with the {'hooks' if sheet.pulled else 'arms'}; " if sheet.beyond else ""
+    yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, f"{tails}the helix is longer by 1/cos α")
     formula = "ρ A l" if s.wire else "ρ π d² l/4"
     yield Row("mass m", 1e3 * en13906.mass(ρ, s.of_mass, nominal), "g", formula, DERIVED, mass, "as the wire length")
     if sheet.pulled or sheet.turns_to or s.wire:  # the formula of the growth is for round wire
@@ -110,7 +111,8 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
         of_body = None if sheet.beyond else opened
         yield Row("rate R", sheet.rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, of_body, "once the coils are open")
     if sheet.beyond:
-        yield Row("  with hooks", sheet.pull_rate, "N/mm", "1/(1/R + ∫ m²/(E I, G J) ds)", DERIVED, opened, "bars")
+        why = "with the wire's pitch and curvature"
+        yield Row("  with hooks", sheet.pull_rate, "N/mm", "1/(1/R + ∫ m²/(E I, G J) ds)", DERIVED, opened, why)
     if sheet.tension:
         found, after = sheet.at_run("initial_tension_N"), sheet.at_run("initial_tension_after_N")
         why = "" if after is None else f"{after:.4g} N after the last release"
@@ -141,9 +143,14 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
     why = "with the wire's pitch and curvature"
     turned = run("turn_rate_Nmm_per_deg")
     yield Row("rate R", rate, "N mm/°", "E d⁴/(3667 D n)", DERIVED, None if sheet.beyond else turned, why)
-    if sheet.beyond:
+    if sheet.on_point:
+        rate = 1.0 / degrees(sheet.on_point.compliance)
+        why = "without an arbor, which would take a part of the side force"
+        yield Row("  with an arm on a point", rate, "N mm/°", "1/∫ m²/(E I, G J) ds, m = F a", DERIVED, turned, why)
+        yield Row("  lever of its force F", sheet.on_point.lever, "mm", "h, about the axis", DERIVED)
+    elif sheet.beyond:
         rate = 1.0 / (1.0 / rate + degrees(sheet.beyond))
-        yield Row("  with arms", rate, "N mm/°", "1/(1/R + ∫ ds/(E I, G J))", DERIVED, turned, why)
+        yield Row("  with clamped arms", rate, "N mm/°", "1/(1/R + ∫ ds/(E I, G J))", DERIVED, turned, why)
     yield Row("stress factor q", q, "", "(4 w² − w − 1)/(4 w (w − 1))", DERIVED)
     most = max(sheet.turns_to, key=abs)
     for turn in sheet.turns_to:
@@ -151,7 +158,11 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
         σ, flow = en13906.bending_stress(torque, s.d), "less where the wire yields, more on an arbor"
         found = run("torque_max_Nmm") if largest else None
         yield Row(f"torque at {turn:.4g}°", torque, "N mm", "R α", DERIVED, None if found is None else abs(found), flow)
-        yield Row("  bending stress σ", σ, "MPa", "32 M/(π d³)", DERIVED)
+        formula = "32 M/(π d³)"
+        if sheet.on_point:
+            yield Row("  force on the arm F", torque / sheet.on_point.lever, "N", "M/h", DERIVED)
+            σ, formula = sheet.on_point.greatest * σ, "32 F a/(π d³), where the coil is farthest from F"
+        yield Row("  bending stress σ", σ, "MPa", formula, DERIVED)
         found = run("max_bending_inside_MPa") if largest else None
         found = None if found is None else abs(found)
         yield Row("  at the inside σq", q * σ, "MPa", "q σ", DERIVED, found, "largest at the inside")

@@ -9,6 +9,7 @@ from coilset.model.case.phases import Phase, heads_of
 from coilset.model.standards import en13906, en15800, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.from_results import Found
+from coilset.model.standards.rate import OnPoint
 from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import Wire
 
@@ -37,6 +38,7 @@ class Sheet:
         turns_to: rotations that the load program goes to, degrees, positive in the winding direction, see EN 13906-3.
         tension: initial tension F0 of coils wound onto each other, N.
         beyond: compliance of hooks, mm/N, or of arms, rad/(N mm).
+        on_point: of a torsion spring with an arm on a point; None of others.
     """
 
     spring: Cylinder
@@ -55,6 +57,7 @@ class Sheet:
     turns_to: Sequence[float] = ()
     tension: float = 0.0
     beyond: float = 0.0
+    on_point: OnPoint | None = None
 
     @property
     def rate(self) -> float:

@@ -155,10 +155,11 @@ def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
 
 def _lines(rows: Sequence[Row], beside: bool, width: int) -> Iterator[str]:
     """Text of a section: label, value, unit, result, formula and how it was checked; reasons on lines below."""
+    units = max([4, *(len(row.unit) for row in rows)]) + 1
     for row in rows:
         found = _number(row.found) if row.found is not None else ""
         parts = [
-            f"  {row.label:{width}} {_number(row.value):>9} {row.unit:5}",
+            f"  {row.label:{width}} {_number(row.value):>9} {row.unit:{units}}",
             f"{found:>9}  " if beside else "",
             f"{row.formula}  " if row.formula else "",
             f"[dim]{row.sure}[/]" if row.sure else "",

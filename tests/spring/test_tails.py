@@ -13,7 +13,7 @@ from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.section import surface
 from coilset.model.standards import en13906
-from coilset.model.standards.rate import tails_compliance
+from coilset.model.standards.rate import OnPoint, tails_compliance
 
 WIRE, MEAN, TURNS, TENSION = 3.0, 30.0, 4.0, 25.0
 MESH = {"elements_per_turn": 12, "section": {"radial": 4, "angular": 12}}
@@ -147,12 +147,18 @@ def test_an_arm_on_a_point_bends_between_it_and_the_coil():
     t = np.linspace(*wire.held, 20_001)
     x, along = wire.centre_line(t), wire.tangent(t)
     across = np.cross([0.0, 0.0, 1.0], along[-1])
+    across /= np.linalg.norm(across)
     lever = np.cross(x[-1], across)[2]
     moment = np.cross(x - x[-1], across / lever)
     twist = np.sum(moment * along, axis=1) ** 2
     bending = np.sum(moment**2, axis=1) - twist
     compliance = np.trapezoid((twist / (2 * G) + bending / E) * wire.speed(t), t) / (np.pi * WIRE**4 / 64)
     assert summary["turn_rate_Nmm_per_deg"] == pytest.approx(np.pi / 180 / compliance, rel=0.01)
+    sheet = OnPoint.of(wire, E, G)
+    assert (sheet.compliance, sheet.lever) == pytest.approx((compliance, abs(lever)), rel=1e-6)
+    stress = sheet.greatest * en13906.bending_stress(summary["torque_max_Nmm"], WIRE)  # 1.4 times that of the torque
+    inside = summary["max_bending_inside_MPa"]
+    assert abs(inside) == pytest.approx(en13906.bending_correction(MEAN / WIRE) * abs(stress), rel=0.015)
     top = analysis.result.seats[-1].top
     push = np.array([top.lateral_x_N, top.lateral_y_N, 0.0])
     R = np.radians(-4.0)
