@@ -506,8 +506,11 @@ def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwri
     Raises:
         InputError: a file is wrong; then nothing is run.
 
-    >>> import tempfile
-    >>> data = sweep("examples/sweeps/preset_height.yaml", tempfile.mkdtemp())
+    >>> import os, tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> wires = "{case: %s/examples/ck15_presetting.yaml, vary: {spring.wire_diameter: [4.9, 5.1]}}"
+    >>> _ = (folder / "wires.yaml").write_text(wires % os.getcwd())
+    >>> data = sweep(folder / "wires.yaml", folder / "wires")
     >>> bool((data["status"] == "done").all())
     True
     """

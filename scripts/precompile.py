@@ -20,7 +20,8 @@ PRESSED, HELD = ("ck15_presetting.yaml", LOADING), ("time/relaxation.yaml", CREE
 
 def short_case(example: str, loading: str) -> Case:
     """An example in few elements with a load program."""
-    return read_case(EXAMPLES / example, ("mesh.elements_per_turn=16", loading))
+    coarse = ("mesh.elements_per_turn=10", "mesh.section.radial=2", "mesh.section.angular=8")
+    return read_case(EXAMPLES / example, (*coarse, loading))
 
 
 def warm(names: Sequence[str] = STAGES, report: Callable[[str], object] = lambda line: None) -> None:

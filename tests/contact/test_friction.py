@@ -262,9 +262,9 @@ def test_a_rod_that_may_turn_rolls_instead_of_sliding():
 STEPS = 8  # of a phase; the error of the increments falls with their square
 
 
-def analyse(friction, comm=MPI.COMM_SELF):
+def analyse(friction, comm=MPI.COMM_SELF, number=STEPS):
     """A closed and ground elastic spring, pressed by 8 mm and released, with end coils in a groove."""
-    loading = [{"to": {"travel": travel}, "steps": STEPS} for travel in (8.0, 0.0)]
+    loading = [{"to": {"travel": travel}, "steps": number} for travel in (8.0, 0.0)]
     data = {
         "spring": SPRING,
         "material": "elastic",
@@ -297,7 +297,7 @@ def test_a_cycle_loses_energy_with_friction_and_none_without():
 def test_friction_is_in_balance_and_part_of_the_state(tmp_path):
     """Every cut through the wire is in balance to 1e-8 of force and force times diameter; resumed runs agree."""
     friction = {"seats": 0.2, "coils": 0.2}
-    whole, lacks = analyse(friction), []
+    whole, lacks = analyse(friction, number=4), []
     whole.run(lambda step: lacks.append(whole.imbalance()))
     greatest = max(step.force_N for step in whole.result.steps)
     force, moment = np.max(lacks, axis=0)
@@ -311,10 +311,10 @@ def test_friction_is_in_balance_and_part_of_the_state(tmp_path):
         if step.number == 6:
             raise Stop
 
-    first = analyse(friction)
+    first = analyse(friction, number=4)
     with pytest.raises(Stop):
         first.run(stop, Checkpoint(tmp_path, first.case).save)
-    second = analyse(friction)
+    second = analyse(friction, number=4)
     second.resume(Checkpoint(tmp_path, second.case).load(second.comm))
     second.run()
     assert [step.force_N for step in second.result.steps] == [step.force_N for step in whole.result.steps]
@@ -324,7 +324,7 @@ def test_friction_is_in_balance_and_part_of_the_state(tmp_path):
 def test_ranks_rub_the_same():
     """Forces on any number of ranks are those of one, to 1e-10."""
     friction = {"seats": 0.2, "coils": 0.2}
-    alone, together = (analyse(friction, comm).run().steps for comm in (MPI.COMM_SELF, MPI.COMM_WORLD))
+    alone, together = (analyse(friction, comm, 4).run().steps for comm in (MPI.COMM_SELF, MPI.COMM_WORLD))
     greatest = max(step.force_N for step in alone)
     np.testing.assert_allclose(
         [step.force_N for step in together], [step.force_N for step in alone], rtol=0, atol=1e-10 * greatest

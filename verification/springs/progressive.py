@@ -79,7 +79,8 @@ def solve(name: str) -> Characteristic:
     """The `Characteristic` of a case."""
     ends, travel, spring = CASES[name]
     loading = [{"to": {"travel": travel}, "steps": STEPS}]
-    data = {"spring": spring, "ends": ends, "loading": loading, "mesh": {"section": {"kind": "plane"}}}
+    mesh = {"section": {"kind": "plane", "radial": 3, "angular": 8}}
+    data = {"spring": spring, "ends": ends, "loading": loading, "mesh": mesh, "accuracy": "none"}
     analysis = Analysis(check(data), MPI.COMM_SELF)
     steps = analysis.run().steps
     force = np.array([step.force_N for step in steps])
