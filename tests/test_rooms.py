@@ -64,7 +64,7 @@ PARAMETERS = {
     "model/section/fibres.py": 2,
     "model/section/integration.py": 1,
     "model/section/warping.py": 2,
-    "model/uniform/rod.py": 1,
+    "model/uniform_coil/rod.py": 1,
     "scripts/commands/sheet.py": 1,
     "scripts/commands/solve.py": 1,
 }

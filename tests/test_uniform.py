@@ -8,8 +8,8 @@ import pytest
 from coilset.model.base.errors import SolveError
 from coilset.model.material import library
 from coilset.model.section.rules import polar, upper_half
-from coilset.model.uniform import rod as uniform
-from coilset.model.uniform.section import Coil, force_shear, integrate, residual_and_tangent, strains
+from coilset.model.uniform_coil import rod as uniform
+from coilset.model.uniform_coil.section import Coil, force_shear, integrate, residual_and_tangent, strains
 
 COIL = np.array([5.0, 40.0, 12.0, 2.5])
 

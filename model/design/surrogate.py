@@ -13,7 +13,7 @@ from coilset.model.design.conditions import Condition
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.standards.wires.law import case_law
-from coilset.model.uniform.estimate import estimate
+from coilset.model.uniform_coil.estimate import estimate
 
 
 @dataclass(frozen=True)

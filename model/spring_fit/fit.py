@@ -21,7 +21,7 @@ from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
 from coilset.model.spring_fit.model import TESTER, Errors, Model, names
 from coilset.model.spring_fit.pressing import Pressing
 from coilset.model.standards.wires.law import case_law, hottest
-from coilset.model.uniform.equivalent import coil
+from coilset.model.uniform_coil.equivalent import coil
 
 ROUNDS = 10
 SETTLED = 0.2  # squared standard deviations by which the last search, or the last whole rods, may have come nearer

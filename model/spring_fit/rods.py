@@ -19,8 +19,8 @@ from coilset.model.material.law.law import Law
 from coilset.model.results.records.record import Step
 from coilset.model.run.analysis import Analysis
 from coilset.model.spring_fit.pressing import Pressing
-from coilset.model.uniform.equivalent import coil
-from coilset.model.uniform.rod import UniformState, press
+from coilset.model.uniform_coil.equivalent import coil
+from coilset.model.uniform_coil.rod import UniformState, press
 
 PRESS, RELEASE = 24, 8  # steps of a branch
 

@@ -21,7 +21,7 @@ from coilset.model.run.analysis import Analysis
 from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.engines.pool import Record, Task
 from coilset.model.sweep.keys import Keys, Model
-from coilset.model.uniform.estimate import estimate
+from coilset.model.uniform_coil.estimate import estimate
 
 
 def evaluate(

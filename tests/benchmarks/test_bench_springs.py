@@ -9,8 +9,8 @@ from coilset.model.case import check
 from coilset.scripts.commands import bench as command
 from coilset.scripts.terminal import spring_costs
 from coilset.verification.benchmarks import springs
-from coilset.verification.springs.press_one import press
-from coilset.verification.springs.random_springs import FAMILIES
+from coilset.verification.random_springs.press_one import press
+from coilset.verification.random_springs.springs import FAMILIES
 
 SMALL = springs.WARM
 

@@ -6,7 +6,7 @@ import pytest
 
 from coilset.model import equilibrium
 from coilset.verification.cases.contact.contact_meshes import FAILED, IN_PARTS, SOLVED, press
-from coilset.verification.springs.torsion import CoilByCoil
+from coilset.verification.spring_references.coil_by_coil import CoilByCoil
 
 
 def test_cone_reaches_block_and_comes_back_without_a_failed_solve():

@@ -6,7 +6,7 @@ import pytest
 from coilset.model.case import check
 from coilset.model.design.conditions import Condition
 from coilset.model.design.surrogate import guess
-from coilset.model.uniform.equivalent import coil
+from coilset.model.uniform_coil.equivalent import coil
 
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 8.0}
 

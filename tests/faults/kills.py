@@ -28,7 +28,7 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from coilset.verification.springs.random_springs import random_spring
+from coilset.verification.random_springs.springs import random_spring
 
 CASE = """
 spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}

@@ -9,8 +9,8 @@ from coilset.meshes.springs.spring import MeasuredSpec, SpringSpec
 from coilset.model.case import check
 from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
-from coilset.verification.springs import progressive, representation
-from coilset.verification.springs.curved_rod import clamped_rate
+from coilset.verification.spring_references import progressive, representation
+from coilset.verification.spring_references.curved_rod import clamped_rate
 
 CURVED = "curved"
 

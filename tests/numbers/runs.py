@@ -101,7 +101,7 @@ def press_and_release(comm: MPI.Comm) -> dict[str, np.ndarray]:
     Returns:
         Name → array.
     """
-    from coilset.verification.solid_vs_rod.pressing import PressedSection, run_solid
+    from coilset.verification.solid_study.pressing import PressedSection, run_solid
 
     found = {}
 

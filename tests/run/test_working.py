@@ -10,7 +10,7 @@ from coilset.model.results.records.summary import summarise
 from coilset.model.results.records.working import is_working_number, names_of
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards import en13906
-from coilset.model.uniform.estimate import estimate
+from coilset.model.uniform_coil.estimate import estimate
 
 MADE = ["mesh.elements_per_turn=8", "mesh.section.radial=3", "mesh.section.angular=8", "accuracy=none"]
 PRESSED = "{to: {travel: 12}, steps: 6}, {to: {force: 0}, steps: 2}"

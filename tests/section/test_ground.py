@@ -12,7 +12,7 @@ from coilset.model.section.outline import Segment
 from coilset.model.section.rules import polar, rim
 from coilset.model.section.shape import curved_shape
 from coilset.verification.cases.sections.ground_sections import CutCoil, slice_rate
-from coilset.verification.slice.references import ring_sector
+from coilset.verification.one_section.slice_references import ring_sector
 
 UP = (0.0, 1.0)
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 5.5, "pitch": 12.0, "end_coils": "closed and ground"}

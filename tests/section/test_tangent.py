@@ -6,7 +6,7 @@ import pytest
 from coilset.meshes.springs.placement import Placement, round_wire
 from coilset.model.section.kinds import KINDS, make_sections
 from coilset.model.section.rules import polar
-from coilset.verification.springs.curved_rod import section_stiffness
+from coilset.verification.spring_references.curved_rod import section_stiffness
 
 RADIUS = np.array([2.5])
 CURVATURE, TORSION = 0.08, 0.01  # 1/mm: D/d = 5

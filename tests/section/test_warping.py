@@ -9,8 +9,8 @@ from coilset.model.section.condensation import TOLERANCE, strain_operator
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import polar, rim
-from coilset.verification.sections.helix import HelixSection
-from coilset.verification.solid_vs_rod import references
+from coilset.verification.one_section.helix import HelixSection
+from coilset.verification.solid_study import references
 
 RADIUS = 2.5
 

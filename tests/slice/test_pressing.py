@@ -10,8 +10,8 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.watch import Watch, equivalent
-from coilset.verification.sections.solid import RECORDED
-from coilset.verification.slice.references import ring_sector
+from coilset.verification.one_section.recorded_solids import RECORDED
+from coilset.verification.one_section.slice_references import ring_sector
 
 
 def press(problem, travel, steps=6):

@@ -9,7 +9,7 @@ from coilset.meshes.solid import SectionGrid, straight_wire
 from coilset.model.solid import configuration
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.problem import SolidProblem
-from coilset.verification.solid_vs_rod.references import plastic_bending_moment
+from coilset.verification.solid_study.references import plastic_bending_moment
 
 d, R, L = 5.0, 2.5, 40.0
 

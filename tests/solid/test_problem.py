@@ -17,7 +17,7 @@ from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
 from coilset.model.solid.program import AxialProgram
 from coilset.model.solid.sampling import SectionSample, disk_grid
-from coilset.verification.solid_vs_rod.references import nadai_torque
+from coilset.verification.solid_study.references import nadai_torque
 
 d, R, L = 5.0, 2.5, 5.0
 ORIGIN = np.zeros(3)

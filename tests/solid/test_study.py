@@ -13,8 +13,8 @@ from coilset.model.solid import output
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.problem import SolidProblem
 from coilset.model.solid.sampling import SectionSample, disk_grid
-from coilset.verification.solid_vs_rod import elastic, pressing, references, study
-from coilset.verification.solid_vs_rod.store import Store
+from coilset.verification.solid_study import elastic, pressing, references, study
+from coilset.verification.solid_study.store import Store
 
 
 def test_goehners_equation_meets_his_series():

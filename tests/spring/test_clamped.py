@@ -8,8 +8,8 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.case import Case
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
-from coilset.verification.springs.curved_rod import clamped_rate
-from coilset.verification.springs.torsion import CoilByCoil
+from coilset.verification.spring_references.coil_by_coil import CoilByCoil
+from coilset.verification.spring_references.curved_rod import clamped_rate
 
 WIRE, MEAN, TURNS, PITCH = 5.0, 40.0, 2.5, 12.0
 PLANE = {"section": {"kind": "plane"}}

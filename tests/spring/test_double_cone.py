@@ -4,7 +4,7 @@ import pytest
 
 from coilset.model.case import check
 from coilset.model.case.targets import closing_force
-from coilset.verification.springs.press_one import press
+from coilset.verification.random_springs.press_one import press
 
 
 def test_block_is_reached_at_a_finite_force():

@@ -11,7 +11,7 @@ from coilset.model.run.analysis import Analysis
 from coilset.model.standards import en13906
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.rows import sections
-from coilset.verification.springs.torsion import shear_curve
+from coilset.verification.spring_references.coil_by_coil import shear_curve
 
 WIRE, MEAN, TURNS, TENSION = 3.0, 30.0, 8.0, 25.0
 SPRING = {"wire_diameter": WIRE, "mean_diameter": MEAN, "turns": TURNS, "initial_tension": TENSION}

@@ -12,8 +12,8 @@ from mpi4py import MPI
 from coilset.model.case import read_case
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
-from coilset.verification.springs.curved_rod import clamped_rate
-from coilset.verification.springs.torsion import CoilByCoil
+from coilset.verification.spring_references.coil_by_coil import CoilByCoil
+from coilset.verification.spring_references.curved_rod import clamped_rate
 
 SETTINGS = [
     "accuracy=none",

@@ -15,7 +15,7 @@ from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import DERIVED, GIVEN, ONE, TWO, sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import wire
-from coilset.verification.slice.references import ring_sector
+from coilset.verification.one_section.slice_references import ring_sector
 
 PRINTED = next(one for one in CATALOGUE if one.name == "D-313J-02")
 d, D, n, TURNS, L0, LN = 3.6, 28.0, 5.5, 7.5, 53.9, 30.78

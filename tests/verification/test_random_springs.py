@@ -7,7 +7,7 @@ from coilset.model.case.targets import check_targets
 from coilset.model.material import library
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_law
-from coilset.verification.springs.random_springs import FAMILIES, features, random_spring
+from coilset.verification.random_springs.springs import FAMILIES, features, random_spring
 
 NUMBERS = range(84)
 KINDS = {

@@ -5,7 +5,7 @@ Spring 194 is as quick and is left out: its force at 90 % of the travel is off b
 
 import pytest
 
-from coilset.verification.springs import stated_error
+from coilset.verification.random_springs import stated_error
 
 NOTHING = 1e-6  # N, mm, MPa: smaller numbers are rounding, as the set of a spring that stays elastic
 

@@ -15,7 +15,7 @@ from coilset.model.vibration.loaded import phase_to
 from coilset.model.vibration.mass import TONNE
 from coilset.model.vibration.modes import _glued, natural_modes
 from coilset.verification.chain import ALL, X, chain, elastic, straight
-from coilset.verification.vibration.helix import HelicalRod
+from coilset.verification.spring_references.vibrating_helix import HelicalRod
 
 E, NU, DENSITY = 206e3, 0.3, 7.85e-6
 G = E / (2.0 * (1.0 + NU))

@@ -14,8 +14,8 @@ import numpy as np
 
 from coilset.model.base.errors import CoilsetError
 from coilset.model.runtime.processes import end_with_parent
-from coilset.verification.springs import press_one
-from coilset.verification.springs.random_springs import family, features, random_spring
+from coilset.verification.random_springs import press_one
+from coilset.verification.random_springs.springs import family, features, random_spring
 
 LIMIT = 60.0  # seconds of the processor that a spring may take
 COMPILING = 900.0  # seconds of the processor that a short run may take

@@ -21,7 +21,7 @@ def read(paths: Sequence[str], points: bool) -> "tuple[Readings, ...]":
     from coilset.model.case import read_case
     from coilset.model.material.identification.relaxation_tests import read_relaxation
     from coilset.model.standards import en13906
-    from coilset.model.uniform.equivalent import coil
+    from coilset.model.uniform_coil.equivalent import coil
 
     found = []
     for path, case in with_cases(paths):

@@ -17,8 +17,8 @@ from matplotlib.figure import Figure
 from coilset.model.base.style import STYLE
 from coilset.model.material import library
 from coilset.verification.cases.solid.slice_uniform import INDICES, rod_pressed
-from coilset.verification.slice.runs import pressed
-from coilset.verification.solid_vs_rod.pressing import PressedSection
+from coilset.verification.one_section.slice_runs import pressed
+from coilset.verification.solid_study.pressing import PressedSection
 from coilset.verification.study import Study
 
 FAST = False

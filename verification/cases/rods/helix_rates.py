@@ -18,7 +18,7 @@ from mpi4py import MPI
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
 from coilset.model.run.analysis import Analysis
-from coilset.verification.springs.curved_rod import clamped_rate
+from coilset.verification.spring_references.curved_rod import clamped_rate
 from coilset.verification.study import Study
 
 FAST = True

@@ -30,8 +30,8 @@ from coilset.model.section.outline import Outlined, OutlinedRule
 from coilset.model.section.rules import polar
 from coilset.model.slice.analysis import ACROSS, INSIDE
 from coilset.model.slice.slice import Coil
-from coilset.verification.sections.outlined_coil import OutlinedCoil
-from coilset.verification.slice.runs import press
+from coilset.verification.one_section.outlined_coil import OutlinedCoil
+from coilset.verification.one_section.slice_runs import press
 from coilset.verification.study import Study
 
 WIRES: dict[str, Outline] = {

@@ -20,10 +20,10 @@ from coilset.model.material.law.law import Law
 from coilset.model.section.rules import polar
 from coilset.model.section.surface import nominal_shear
 from coilset.model.slice.analysis import ACROSS
-from coilset.verification.sections.helix import WIRE, HelixSection
-from coilset.verification.slice.references import ring_sector
-from coilset.verification.slice.runs import elastic, pressed
-from coilset.verification.solid_vs_rod import references
+from coilset.verification.one_section.helix import WIRE, HelixSection
+from coilset.verification.one_section.slice_references import ring_sector
+from coilset.verification.one_section.slice_runs import elastic, pressed
+from coilset.verification.solid_study import references
 from coilset.verification.study import Study
 
 FAST = True

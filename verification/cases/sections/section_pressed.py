@@ -19,11 +19,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
-from coilset.verification.sections.ends import ends, of_turn
-from coilset.verification.sections.solid import RECORDED, Solid
-from coilset.verification.slice.runs import pressed as press_slice
-from coilset.verification.solid_vs_rod import pressing
-from coilset.verification.solid_vs_rod.pressing import FINE
+from coilset.verification.one_section.ends import ends, of_turn
+from coilset.verification.one_section.recorded_solids import RECORDED, Solid
+from coilset.verification.one_section.slice_runs import pressed as press_slice
+from coilset.verification.solid_study import pressing
+from coilset.verification.solid_study.pressing import FINE
 from coilset.verification.study import Study
 
 KINDS = ("plane", "curved", "warping", "slice")

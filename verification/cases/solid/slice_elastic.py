@@ -17,9 +17,13 @@ from coilset.model.base.style import STYLE
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.slice.analysis import ACROSS
-from coilset.verification.slice.references import ring_sector, torsion_constant_ellipse, torsion_constant_rectangle
-from coilset.verification.slice.runs import WIRE, elastic
-from coilset.verification.solid_vs_rod.references import goehner_exact
+from coilset.verification.one_section.slice_references import (
+    ring_sector,
+    torsion_constant_ellipse,
+    torsion_constant_rectangle,
+)
+from coilset.verification.one_section.slice_runs import WIRE, elastic
+from coilset.verification.solid_study.references import goehner_exact
 from coilset.verification.study import Study
 
 FAST = True

@@ -17,9 +17,9 @@ from coilset.model.base.style import STYLE
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.slice.analysis import ACROSS
-from coilset.model.uniform import rod as uniform
-from coilset.verification.slice.runs import WIRE, Pressed, pressed
-from coilset.verification.solid_vs_rod.pressing import PressedSection
+from coilset.model.uniform_coil import rod as uniform
+from coilset.verification.one_section.slice_runs import WIRE, Pressed, pressed
+from coilset.verification.solid_study.pressing import PressedSection
 from coilset.verification.study import Study
 
 FAST = True

@@ -18,11 +18,11 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
-from coilset.verification.sections import solid as solids
-from coilset.verification.sections.ends import ends as of_ends
-from coilset.verification.slice.runs import Pressed, pressed
-from coilset.verification.solid_vs_rod.pressing import PressedSection, run_solid
-from coilset.verification.solid_vs_rod.store import Store
+from coilset.verification.one_section import recorded_solids as solids
+from coilset.verification.one_section.ends import ends as of_ends
+from coilset.verification.one_section.slice_runs import Pressed, pressed
+from coilset.verification.solid_study.pressing import PressedSection, run_solid
+from coilset.verification.solid_study.store import Store
 from coilset.verification.study import Study
 
 # D/d: unknowns, force (N) and set (mm) of the solid, docs/solid.md

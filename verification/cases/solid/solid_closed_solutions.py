@@ -23,7 +23,7 @@ from coilset.model.material.law.law import Law
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
-from coilset.verification.solid_vs_rod.references import nadai_torque, plastic_bending_moment
+from coilset.verification.solid_study.references import nadai_torque, plastic_bending_moment
 from coilset.verification.study import Study
 
 FAST = True

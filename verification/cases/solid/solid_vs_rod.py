@@ -7,7 +7,7 @@ the wire. The elastic turn without pitch gives the shear factor at the inside of
 Where the wire is elastic, the rod misses the curvature of the coil: its rate is 11/16 (d/D)² too low (3/16 because
 Göhner's curved wire is stiffer, 1/2 because the rod's shear makes it softer), and its shear stress is 3/4 (d/D) too low
 at the inside. Plastic flow evens out the force; the set is too small by the excess springback, and the residual stress
-at the inside is too small. All indices and meshes: `python -m coilset.verification.solid_vs_rod FOLDER whole`; the
+at the inside is too small. All indices and meshes: `python -m coilset.verification.solid_study FOLDER whole`; the
 results are in docs/solid.md.
 """
 
@@ -15,9 +15,9 @@ import shutil
 
 from mpi4py import MPI
 
-from coilset.verification.solid_vs_rod import figures
-from coilset.verification.solid_vs_rod import study as solid_study
-from coilset.verification.solid_vs_rod.store import Store
+from coilset.verification.solid_study import figures
+from coilset.verification.solid_study import study as solid_study
+from coilset.verification.solid_study.store import Store
 from coilset.verification.study import Study
 
 

@@ -2,7 +2,7 @@
 
 Force at 50, 90 and 100 % of the travel, set and residual shear stress inside, each with the error that the run states,
 against references with 64 elements a turn, 16 × 64 section points, an accuracy of 0.02 % and a bedding as stiff as E,
-four times the default (`verification/springs/stated_error.py` makes them, `stated_error.yaml` holds them).
+four times the default (`verification/random_springs/stated_error.py` makes them, `stated_error.yaml` holds them).
 
 Tolerances: at most 5 % of the true errors are above the stated ones, and the median of stated over true is at most 5.
 """
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.base.errors import CoilsetError
 from coilset.model.base.style import STYLE
-from coilset.verification.springs import stated_error
+from coilset.verification.random_springs import stated_error
 from coilset.verification.study import Study
 
 FAST = False

@@ -33,7 +33,7 @@ from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
-from coilset.model.uniform.rod import press
+from coilset.model.uniform_coil.rod import press
 from coilset.verification.study import Study
 
 FAST = False

@@ -38,8 +38,8 @@ from coilset.model.run.analysis import Analysis
 from coilset.model.section.kinds import KINDS
 from coilset.model.section.rules import polar
 from coilset.verification.cases.time.relaxation import BEYOND, HOURS, JUDGED, RIM, WARM, YIELD, G, N, lapse, law
+from coilset.verification.one_section.helix import WIRE, HelixSection
 from coilset.verification.references import creeping_ring, relaxing_bar
-from coilset.verification.sections.helix import WIRE, HelixSection
 from coilset.verification.study import Study
 
 FAST = False

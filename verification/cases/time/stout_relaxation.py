@@ -32,7 +32,7 @@ from coilset.model.slice.slice import Coil, Slice
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
 from coilset.model.solid.program import AxialProgram
-from coilset.verification.solid_vs_rod.pressing import WIRE, PressedSection
+from coilset.verification.solid_study.pressing import WIRE, PressedSection
 from coilset.verification.study import Study
 
 FAST = False

@@ -28,8 +28,8 @@ from coilset.model.rotations.triads import chord_triads
 from coilset.model.section.rules import polar
 from coilset.model.vibration.modes import Modes, natural_modes
 from coilset.verification.chain import elastic
+from coilset.verification.spring_references.vibrating_helix import HelicalRod
 from coilset.verification.study import Study
-from coilset.verification.vibration.helix import HelicalRod
 
 FAST = True
 SPRINGS = {"stout": (5.0, 40.0, 4.0, 12.0), "slender": (1.0, 10.0, 7.6, 10.0 * np.pi * np.tan(np.radians(8.5744)))}

@@ -1,6 +1,6 @@
 """Equilibrium of the uniform coil's section, compiled: strains, resultants, and one step of Newton's method.
 
-The equations and the letters are those of `coilset.model.uniform.rod`.
+The equations and the letters are those of `coilset.model.uniform_coil.rod`.
 """
 
 import math

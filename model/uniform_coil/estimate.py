@@ -16,8 +16,8 @@ from coilset.model.case.targets import check_targets, check_working
 from coilset.model.case.working import WorkingSpec
 from coilset.model.material.law.law import Law
 from coilset.model.section.rules import polar, upper_half
-from coilset.model.uniform.equivalent import coil
-from coilset.model.uniform.rod import UniformState, press
+from coilset.model.uniform_coil.equivalent import coil
+from coilset.model.uniform_coil.rod import UniformState, press
 
 STEPS = 6  # of a phase
 PROBE = 1e-3  # of the free length, for the initial rate

@@ -2,12 +2,12 @@
 
 Iterations, on any number of ranks; it resumes where it stopped:
 
-    scripts/coilset python -m coilset.verification.solid_vs_rod.scaling FOLDER
+    scripts/coilset python -m coilset.verification.solid_study.scaling FOLDER
 
 Time of one linearised step of 200,000 unknowns, five times; first on one rank, then on two, which also prints the
 ratio:
 
-    scripts/coilset [-n 2] python -m coilset.verification.solid_vs_rod.scaling FOLDER time
+    scripts/coilset [-n 2] python -m coilset.verification.solid_study.scaling FOLDER time
 """
 
 import os
@@ -24,8 +24,8 @@ from coilset.model.material import library
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
-from coilset.verification.solid_vs_rod.pressing import WIRE, PressedSection
-from coilset.verification.solid_vs_rod.store import Store
+from coilset.verification.solid_study.pressing import WIRE, PressedSection
+from coilset.verification.solid_study.store import Store
 
 # elements along the core's side and of rings, and along the wire: name → 20,000 to 500,000 unknowns
 SIZES = {"20k": (3, 32), "50k": (4, 48), "120k": (5, 72), "200k": (6, 86), "500k": (8, 122)}

@@ -5,10 +5,10 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from coilset.verification.solid_vs_rod import elastic, pressing
-from coilset.verification.solid_vs_rod.elastic import ElasticCase
-from coilset.verification.solid_vs_rod.pressing import PressedSection
-from coilset.verification.solid_vs_rod.store import Store
+from coilset.verification.solid_study import elastic, pressing
+from coilset.verification.solid_study.elastic import ElasticCase
+from coilset.verification.solid_study.pressing import PressedSection
+from coilset.verification.solid_study.store import Store
 
 INDICES = (4.0, 6.0, 8.0, 12.0)
 # elements along the core's side and of rings, and along the wire

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from matplotlib.tri import TriContourSet
 
 from coilset.model.base.style import DIVERGING, STYLE, levels
-from coilset.verification.solid_vs_rod import pressing, references, study
-from coilset.verification.solid_vs_rod.pressing import PressedSection
+from coilset.verification.solid_study import pressing, references, study
+from coilset.verification.solid_study.pressing import PressedSection
 
 
 def draw(found: study.Found) -> dict[str, Figure]:

@@ -20,7 +20,7 @@ from coilset.model.base.style import STYLE
 from coilset.model.case import check
 from coilset.model.figures.png import save
 from coilset.model.run.analysis import Analysis
-from coilset.verification.springs.curved_rod import torsion_characteristic
+from coilset.verification.spring_references.curved_rod import torsion_characteristic
 
 STEPS = 26
 CASES = {  # ends, travel in mm, spring

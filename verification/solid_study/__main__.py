@@ -1,4 +1,4 @@
-"""Run the study: `scripts/coilset python -m coilset.verification.solid_vs_rod FOLDER [whole]`; it resumes by itself."""
+"""Run the study: `scripts/coilset python -m coilset.verification.solid_study FOLDER [whole]`; it resumes by itself."""
 
 import sys
 from pathlib import Path
@@ -7,8 +7,8 @@ from mpi4py import MPI
 from rich.console import Console
 
 from coilset.model.figures.png import save
-from coilset.verification.solid_vs_rod import figures, study
-from coilset.verification.solid_vs_rod.store import Store
+from coilset.verification.solid_study import figures, study
+from coilset.verification.solid_study.store import Store
 
 
 def main(folder: str, extent: str = "standard") -> None:

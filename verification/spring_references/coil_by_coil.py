@@ -10,7 +10,7 @@ from coilset.meshes.springs.ends import touching_pitch
 from coilset.meshes.springs.spring import Spring
 from coilset.model.material import programs
 from coilset.model.material.law.law import Law
-from coilset.verification.springs.curved_rod import _points
+from coilset.verification.spring_references.curved_rod import _points
 
 REACH, INCREMENTS = 0.05, 500  # shear strain of the flow curve
 

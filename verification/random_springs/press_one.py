@@ -1,6 +1,6 @@
 """Run the load programs of springs, one after the other, for `coilset bench --springs`.
 
-    scripts/coilset python verification/springs/press_one.py
+    scripts/coilset python verification/random_springs/press_one.py
 
 Reads a case and the seconds that it may take as a line of JSON and prints what became of it as one, until there are no
 more. It runs in this checkout and in others: it uses only what they have, too.

@@ -4,10 +4,10 @@ import numpy as np
 
 from coilset.model.material import library
 from coilset.model.section.rules import polar
-from coilset.model.uniform import rod as uniform
-from coilset.verification.solid_vs_rod import pressing
-from coilset.verification.solid_vs_rod.pressing import FINE, WIRE, PressedSection
-from coilset.verification.solid_vs_rod.study import diameter
+from coilset.model.uniform_coil import rod as uniform
+from coilset.verification.solid_study import pressing
+from coilset.verification.solid_study.pressing import FINE, WIRE, PressedSection
+from coilset.verification.solid_study.study import diameter
 
 INSIDE = -0.45 * WIRE  # 0.9 of the radius, where the solid is sampled
 CURVED = {"kind": "curved", **FINE}

@@ -26,7 +26,7 @@ from coilset.model.material.law.law import Law
 from coilset.model.material.point.points import initial_state
 from coilset.model.runtime.kernels import njit
 from coilset.model.section.rules import DiskRule, polar, upper_half
-from coilset.model.uniform.section import RISE, Coil, force_shear, step
+from coilset.model.uniform_coil.section import RISE, Coil, force_shear, step
 
 SMALLEST_PART = 2.0**-8  # of a step, below which the step is abandoned
 

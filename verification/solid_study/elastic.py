@@ -13,7 +13,7 @@ from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
 from coilset.model.solid.sampling import SectionSample
-from coilset.verification.solid_vs_rod import references
+from coilset.verification.solid_study import references
 
 WIRE = 5.0  # mm
 

@@ -1,6 +1,6 @@
 """Stress and plastic work on the deformed section: files for ParaView, and pyvista's pictures of them.
 
-    scripts/coilset python -m coilset.verification.solid_vs_rod.pictures FOLDER
+    scripts/coilset python -m coilset.verification.solid_study.pictures FOLDER
 
 The same pictures by ParaView: `paraview_view.py` beside this file, run by its pvpython.
 """
@@ -14,7 +14,7 @@ from mpi4py import MPI
 from coilset.model.figures import display
 from coilset.model.solid import output
 from coilset.model.solid.problem import SolidProblem
-from coilset.verification.solid_vs_rod.pressing import PressedSection, run_solid
+from coilset.verification.solid_study.pressing import PressedSection, run_solid
 
 CASE = PressedSection()
 FIELDS = {"von Mises stress": "MPa", "plastic work": "N/mm²"}

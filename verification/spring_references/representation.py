@@ -31,7 +31,7 @@ from coilset.model.rod.elements import THESIS
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.triads import chord_triads
 from coilset.model.section.rules import polar
-from coilset.verification.springs.curved_rod import clamped_rate
+from coilset.verification.spring_references.curved_rod import clamped_rate
 
 TRAVEL = 1e-4  # of the free length, in both directions
 ELEMENTS = (8, 16, 32, 64)

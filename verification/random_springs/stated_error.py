@@ -2,7 +2,7 @@
 
 The references are in `stated_error.yaml`. This makes those of more springs, and adds them to it:
 
-    scripts/coilset python verification/springs/stated_error.py 12 40 77
+    scripts/coilset python verification/random_springs/stated_error.py 12 40 77
 
 with 64 elements a turn, 16 × 64 section points, an accuracy of 0.02 % and a bedding as stiff as Young's modulus, four
 times the default. Each takes minutes: `numbers(60)` are the springs with the fewest turns among the first of the
@@ -22,7 +22,7 @@ from coilset.model.case import Case, check
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards.wires.law import case_law
-from coilset.verification.springs.random_springs import random_spring
+from coilset.verification.random_springs.springs import random_spring
 
 DATA = Path(__file__).with_suffix(".yaml")
 DRAWN = 240  # springs of the generator among which to choose

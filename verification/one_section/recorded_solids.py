@@ -1,10 +1,10 @@
-"""What the 3D solid of `coilset.verification.solid_vs_rod.pressing` found, recorded: its runs take minutes."""
+"""What the 3D solid of `coilset.verification.solid_study.pressing` found, recorded: its runs take minutes."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.verification.solid_vs_rod.pressing import PressedSection
+from coilset.verification.solid_study.pressing import PressedSection
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Random springs: what makers wind, pressed one after the other, and with fine references."""

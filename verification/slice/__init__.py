@@ -1,1 +1,0 @@
-"""The helical slice against closed solutions and against the solid."""

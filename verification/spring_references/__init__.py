@@ -1,0 +1,1 @@
+"""Whole springs solved by other means than rods: rates, characteristics, presetting coil by coil, vibrations."""
