@@ -106,6 +106,11 @@ def frames(run: Run, most: int | None = None) -> Frames:
     return Frames(tuple(labels), x, shear)
 
 
+def bent_frames(run: Run) -> Frames:
+    """The snapshots of a torsion spring, with the stress along its wire in place of the shear."""
+    return Frames(tuple(run.snapshots), run.data["position"].values, loading_stress(run)[1].mean(axis=2))
+
+
 def _kept(phase: np.ndarray, most: int) -> np.ndarray:
     """Places of steps: the last one of each phase, and of the others evenly as many as there is room for."""
     ends = np.append(np.flatnonzero(np.diff(phase)), len(phase) - 1)

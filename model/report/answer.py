@@ -57,7 +57,7 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         inside, 1
     ):  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
         against = "against the load" if inside * s["force_max_N"] < 0.0 else "with the load"
-    if s.get("turn_max_deg") is not None:
+    if is_turned(s):
         return _turned(s)
     return [
         Number("set", _within(s["set_mm"], s.get("estimated_set_error_mm"), "mm", 3), share),
@@ -71,8 +71,18 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
         *_tension(s),
         Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
-        Number("block height", with_unit(s["block_height_mm"], "mm", 2)),
+        *([] if is_pulled(s) else [Number("block height", with_unit(s["block_height_mm"], "mm", 2))]),
     ]
+
+
+def is_turned(s: Mapping[str, Any]) -> bool:
+    """Whether a spring is one of torsion, of whose axial force nothing is said; of summary.json."""
+    return s.get("turn_max_deg") is not None
+
+
+def is_pulled(s: Mapping[str, Any]) -> bool:
+    """Whether its greatest load pulls a spring; of summary.json."""
+    return bool(s["force_max_N"] < 0.0)
 
 
 def _tension(s: Mapping[str, Any]) -> list[Number]:

@@ -14,7 +14,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
 from coilset.model.figures.panels.panel import with_unit
-from coilset.model.report.answer import release_lengths
+from coilset.model.report.answer import answer, is_pulled, is_turned, release_lengths
 from coilset.model.report.verdict import Check, checks, verdict
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
@@ -84,9 +84,13 @@ def results(summary: dict[str, Any]) -> list[tuple[str, str]]:
     rows = [
         ("material", s["material"]),
         ("free length as wound", with_unit(s["free_length_before_mm"], "mm", 2, "")),
+    ]
+    if is_turned(s):
+        return rows + [(one.term, f"{one.value} {one.remark}".strip()) for one in answer(s)]
+    rows += [
         *_releases(s),
         ("set", with_unit(s["set_mm"], "mm", 2, "")),
-        ("block height", with_unit(s["block_height_mm"], "mm", 2, "")),
+        ("block height", "" if is_pulled(s) else with_unit(s["block_height_mm"], "mm", 2, "")),
         ("maximum force", f"{plain(s['force_max_N'], 5)} N"),
         ("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3, "")),
         ("rate after release, 30 to 70 %", with_unit(s["rate_30_70_after_N_per_mm"], "N/mm", 3, "")),

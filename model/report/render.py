@@ -20,11 +20,12 @@ NAME = "report.html"
 SCRIPTS = {"sweep": "sweep.js", "nest": "nest.js"}  # of kinds of pages; run.js of the others
 # explained on a page at hover or focus
 GLOSSARY = {
-    "set": "Permanent loss of length after the spring was compressed and released.",
+    "set": "Loss of length that stays after the load has been taken off; negative of a spring that stays longer. Of a "
+    "torsion spring, the rotation that stays.",
     "free length": "Length of the spring without load.",
     "block": "The state in which all coils touch; the spring cannot be compressed further.",
     "block height": "Height of the spring at block, from its geometry.",
-    "rate": "Force per millimetre of travel; the slope of the characteristic.",
+    "rate": "Force per millimetre of travel, or torque per degree; the slope of the characteristic.",
     "initial rate": "Rate of the spring before anything yields or touches.",
     "residual shear stress": "Shear stress that remains in the unloaded wire. If it acts against the load, the spring "
     "can carry more, because the load must first overcome it.",

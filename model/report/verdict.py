@@ -40,7 +40,10 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
     messages: dict[str, str] = {}
     for one in summary["warnings"]:
         messages.setdefault(one["name"], one["message"])
+    turned, pulled = summary.get("turn_max_deg") is not None, summary.get("force_max_N", 0.0) < 0.0
     cylinder = "" if has_formulas else "EN 13906-1 applies to cylinders of constant wire only"
+    cylinder = "EN 13906-1 applies to springs that are compressed only" if turned or pulled else cylinder
+    unknown = "errors of torque and rotation are not estimated" if turned else ""
     wire = "" if is_standard_wire else f"no permissible stress of {summary['material']} is known"
     complete = Check(LOAD, bool(summary["complete"]), "" if summary["complete"] else "the run ended before it did")
     groups = (
@@ -48,7 +51,7 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
         (WIRE, ("stress", "strength", "endurance"), cylinder or wire),
         ("buckling", ("buckled", "buckling", "snapped"), ""),
         ("material data", ("plastic work",), ""),
-        ("accuracy", ("step error", "unknown error", "penetration", "wall"), ""),
+        ("accuracy", ("step error", "unknown error", "penetration", "wall"), unknown),
     )
     found = [complete, *(_check(name, warnings, messages, not_made) for name, warnings, not_made in groups)]
     named = {name for _, warnings, _ in groups for name in warnings}

@@ -26,6 +26,13 @@ def test_what_cannot_be_checked_is_no_pass():
     assert (wire.result, wire.reason) == ("not checked", "no permissible stress of ck15 is known")
 
 
+def test_formulas_of_compression_springs_are_no_check_of_others():
+    for kind in ({"turn_max_deg": 200.0, "force_max_N": 0.0}, {"turn_max_deg": None, "force_max_N": -300.0}):
+        made = {one.name: one for one in checks(GOOD | kind, True, True)}
+        assert made["gaps between the coils"].met is made["permissible stress"].met is None
+        assert made["accuracy"].met is (None if kind["turn_max_deg"] else True)
+
+
 def test_a_warning_fails_its_check():
     made = {one.name: one for one in checks(warned("gap", "buckled", "index"), True, True)}
     failed = {name for name, one in made.items() if one.met is False}

@@ -3,7 +3,7 @@
 import numpy as np
 
 from coilset.model.figures.panels.panel import Panel, axis, curve, with_unit
-from coilset.model.figures.wire import inside, section_turns, shear_around
+from coilset.model.figures.wire import inside, loading_stress, section_turns, shear_around
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
 
@@ -12,8 +12,10 @@ SHOWN = {"Mt": "torque Mt", "M2": "bending moment M2", "M3": "bending moment M3"
 
 
 def stress_along_wire(run: Run) -> Panel:
-    """Shear on the surface over the turns at all snapshots, inside and outside of the coil."""
-    turns, shear, traces = section_turns(run).ravel(), shear_around(run), []
+    """Shear on the surface over the turns at all snapshots, inside and outside of the coil; of a torsion spring the
+    stress along the wire."""
+    turned = run.summary.get("turn_max_deg") is not None
+    turns, shear, traces = section_turns(run).ravel(), loading_stress(run)[1] if turned else shear_around(run), []
     for number, name in enumerate(run.snapshots[1:], start=1):
         for side, angle, dash in SIDES:
             place = round((inside(run).angle + angle) / (2.0 * np.pi) * shear.shape[-1]) % shear.shape[-1]
@@ -22,16 +24,21 @@ def stress_along_wire(run: Run) -> Panel:
     stays = run.summary["residual_shear_inside_MPa"]
     turn = run.summary.get("residual_shear_inside_turn")
     at = "" if turn is None else f" at turn {turn:.2f}"
-    finding = "Shear stress along the wire"
-    if stays is not None:
+    finding, stress, sign = "Shear stress along the wire", "shear about the wire's axis", "as in a compressed spring"
+    if turned:
+        stays, stress, sign = run.summary["residual_bending_inside_MPa"], "stress along the wire", "in tension"
+        finding = "Stress along the wire, by bending"
+        if stays is not None:
+            finding = f"{with_unit(stays, 'MPa')} of bending stress remain at the inside of the coil"
+    elif stays is not None:
         finding = f"{with_unit(stays, 'MPa')} of shear remain at the inside of the coil{at}"
     return Panel(
         "along_wire",
         finding,
-        f"{finding}. Shear stress on the surface over the turns from the bottom tip, at the inside and the outside of "
-        "the coil, positive as in a compressed spring.",
+        f"{finding}. The {stress} on the surface over the turns from the bottom tip, at the inside and the outside of "
+        f"the coil, positive {sign}.",
         traces,
-        {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("shear about the wire's axis, MPa")},
+        {"xaxis": axis("turn from the bottom tip"), "yaxis": axis(f"{stress}, MPa")},
         height=420,
     )
 
@@ -39,14 +46,18 @@ def stress_along_wire(run: Run) -> Panel:
 def moments_along_wire(run: Run) -> Panel:
     """Torque and bending moments of the sections over the turns, one snapshot at a time."""
     turns, traces = section_turns(run).ravel(), []
-    torque = np.abs(run.data["resultants"].sel(resultant="Mt").values).reshape(len(run.snapshots), -1).max(axis=1)
-    most = int(torque.argmax())
+    bent = run.summary.get("turn_max_deg") is not None
+    loading = run.data["resultants"].sel(resultant=["M2", "M3"] if bent else ["Mt"])
+    moments = np.linalg.norm(loading.transpose("resultant", ...).values, axis=0)
+    moment = moments.reshape(len(run.snapshots), -1).max(axis=1)
+    most = int(moment.argmax())
     order = [*(number for number in range(len(run.snapshots)) if number != most), most]  # the last is shown first
     for choice, number in enumerate(order):
         for place, (key, name) in enumerate(SHOWN.items()):
             values = run.data["resultants"].sel(resultant=key).values[number].ravel()
             traces.append(curve(turns, values, place, dash="solid", name=name, meta={"choice": choice}))
-    finding = f"The wire carries up to {plain(torque[most])} N mm of torque, at {run.snapshots[most]}"
+    kind = "bending moment" if bent else "torque"
+    finding = f"The wire carries up to {plain(moment[most])} N mm of {kind}, at {run.snapshots[most]}"
     return Panel(
         "moments",
         finding,

@@ -29,14 +29,14 @@ def cost(run: Run) -> Panel:
 
 
 def step_error(run: Run) -> Panel | None:
-    """Estimated error of the force by all causes, and by the steps alone; None if unknown."""
+    """Estimated error of the force by all causes, and by the steps alone; None if unknown, or of a torsion spring."""
     columns = {"all causes": "estimated_force_error_N", "steps alone, signed": "steps_force_error_N"}
     known = {
         label: run.data[name].values
         for label, name in columns.items()
         if name in run.data and np.isfinite(run.data[name].values).any()
     }
-    if not known:
+    if not known or run.summary.get("turn_max_deg") is not None:
         return None
     last = run.summary["estimated_force_error_N"]
     finding = (

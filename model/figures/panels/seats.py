@@ -31,7 +31,8 @@ def significant(run: Run) -> np.ndarray:
 
 
 def _has_force(run: Run) -> bool:
-    return "bottom_centre_x_mm" in run.data and bool(run.data["force_N"].values.any())
+    turned = run.summary.get("turn_max_deg") is not None
+    return "bottom_centre_x_mm" in run.data and bool(run.data["force_N"].values.any()) and not turned
 
 
 def _ends(run: Run) -> dict[str, tuple[np.ndarray, np.ndarray]]:

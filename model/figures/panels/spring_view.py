@@ -6,7 +6,7 @@ import numpy as np
 
 from coilset.model.base.style import round_end
 from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, with_unit
-from coilset.model.figures.wire import closed, frames, tubes
+from coilset.model.figures.wire import bent_frames, closed, frames, tubes
 from coilset.model.results.files.opened import Run
 
 RINGS = 6000  # of all moments of a page together
@@ -56,7 +56,12 @@ def shown_surface(places: np.ndarray, stress: np.ndarray) -> Trace:
 def spring_view(run: Run) -> Panel:
     """One tube per step, all on one scale."""
     turns = float(np.ptp(run.data["turn"].values))
-    shown = frames(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
+    turned = run.summary.get("turn_max_deg") is not None
+    shown = bent_frames(run) if turned else frames(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
+    kind, full = "shear", "shear stress about the wire's axis"
+    colours = "Red is sheared as in a compressed spring, blue as in one that is pulled."
+    if turned:
+        kind, full, colours = "stress along the wire", "stress along the wire", "Red is tension, blue compression."
     rings = min(PER_ELEMENT * (run.data.sizes["station"] - 1), RINGS // len(shown.labels)) + 1
     places, stress = closed(*tubes(run, shown, rings))
     end = round_end(float(np.abs(stress).max()))
@@ -65,15 +70,14 @@ def spring_view(run: Run) -> Panel:
     low, high = (with_unit(value, "MPa") for value in (stress[-1].min(), stress[-1].max()))
     return Panel(
         "spring",
-        f"At {run.snapshots[-1]} the shear on the surface runs from {low} to {high}",
-        f"The spring in three dimensions at {len(shown.labels)} moments of its load program, coloured by the shear "
-        f"stress about the wire's axis on its surface from {-end:g} to {end:g} MPa. "
+        f"At {run.snapshots[-1]} the {kind} on the surface runs from {low} to {high}",
+        f"The spring in three dimensions at {len(shown.labels)} moments of its load program, coloured by the "
+        f"{full} on its surface from {-end:g} to {end:g} MPa. "
         f"At the end it is {low} to {high}.",
         [surface_trace(end)],
         scene_of(corners),
         frames=surfaces,
         moments=shown.labels,
         height=520,
-        note="Red is sheared with the load, blue against it. Drag to rotate, scroll or pinch to zoom; the slider steps "
-        "through the load program.",
+        note=f"{colours} Drag to rotate, scroll or pinch to zoom; the slider steps through the load program.",
     )

@@ -71,7 +71,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         **ends_peak(setup, shot),
         residual_shear_inside_MPa=inside,
         residual_shear_inside_turn=inside_turn,
-        shear_inside_max_MPa=max(shear_inside(setup, one)[0] for one in result.snapshots),
+        shear_inside_max_MPa=max((shear_inside(setup, one)[0] for one in result.snapshots), key=abs),
         **peaks(setup, "residual_", [shot] if shot else []),
         **peaks(setup, "", result.snapshots),
         **bending(setup, "residual_", [shot] if shot else []),

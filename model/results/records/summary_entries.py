@@ -82,7 +82,7 @@ class Summary:
         "a compressed spring",
     )
     residual_shear_inside_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
-    shear_inside_max_MPa: float = entry("MPa", "maximum shear stress at the inside over the snapshots")
+    shear_inside_max_MPa: float = entry("MPa", "shear stress of largest magnitude at the inside over the snapshots")
     residual_shear_surface_max_MPa: float | None = entry(
         "MPa", "maximum shear stress on the whole surface of the wire after release", of_slice=False
     )
