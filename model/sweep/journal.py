@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.sweep.keys import KEY_LENGTH
+from coilset.model.sweep.packed import Strings
 
 SYNC_SECONDS = 1.0
 
@@ -122,7 +122,7 @@ class Records:
 
     Args:
         folder: of the sweep.
-        keys: of the tasks that count, in any order.
+        keys: of the tasks that count, in any order; or the array of them.
 
     Attributes:
         keys: the distinct keys in ascending order, an array of bytes, shape (m,).
@@ -132,8 +132,8 @@ class Records:
         InputError: for a line that is not a record, with its number.
     """
 
-    def __init__(self, folder: str | Path, keys: Iterable[str]) -> None:
-        self.keys = np.unique(np.fromiter((key.encode() for key in keys), dtype=f"S{KEY_LENGTH}"))
+    def __init__(self, folder: str | Path, keys: Iterable[str] | np.ndarray) -> None:
+        self.keys = np.unique(Strings(keys).array)
         self.paths = journals(folder)
         self._file = np.full(len(self.keys), -1, np.int32)
         self._start = np.zeros(len(self.keys), np.int64)

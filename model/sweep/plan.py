@@ -3,9 +3,9 @@
 import copy
 import hashlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 from zipfile import BadZipFile
 
 import numpy as np
@@ -23,6 +23,9 @@ from coilset.model.sweep.packed import Row, Strings
 from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.shards import WHOLE, Shard
 from coilset.model.sweep.spec import SweepSpec
+
+
+Work = tuple[Row, str, Model]  # inputs, key and model of what is to be computed
 
 
 class Plan:
@@ -71,12 +74,15 @@ class Plan:
         """Paths of the entries that an input sets."""
         return self.spec.vary[name].entries or [name]
 
-    def tasks(self) -> Iterator[tuple[Row, str, Model]]:
-        """Inputs, key and model of everything to compute: each case by the sweep's model, `rods` of them by rods."""
-        for row, key in zip(self.rows, self.keys, strict=True):
-            yield row, key, self.spec.model
-        for row, key in zip(self.rows[: self.spec.rods], self.keys, strict=False):
-            yield row, as_rod(key), "rod"
+    @property
+    def task_keys(self) -> np.ndarray:
+        """Keys of everything to compute, as bytes: each case by the sweep's model, then `rods` of them by rods."""
+        cases = self.keys.array
+        return np.concatenate([cases, np.char.rstrip(cases[: self.spec.rods], b"u")]) if self.spec.rods else cases
+
+    def tasks(self) -> "Tasks":
+        """Everything to compute, in the order of `task_keys`."""
+        return Tasks(self, np.arange(len(self) + min(self.spec.rods, len(self))))
 
     def add(self, cases: Iterable[tuple[Row, str]]) -> None:
         """Append cases that are not of the design: inputs and keys."""
@@ -115,9 +121,9 @@ class Plan:
 
     def _check_cases(self, shard: Shard) -> Iterator[str]:
         """The keys, one after the other; empty those of other shards."""
-        rehearsal, keys = Rehearsal(self.spec), Keys()
+        rehearsal, keys, own = Rehearsal(self.spec), Keys(), shard.cases(len(self))
         for number, row in enumerate(self.rows):
-            if not shard.has(number):
+            if number not in own:
                 yield ""
                 continue
             case, before = self._checked(row), keys.sources
@@ -174,3 +180,32 @@ class Plan:
         spec = self.spec.model_dump(mode="json", exclude={"figures"})
         made_of = json.dumps([spec, self.base, folders], sort_keys=True, default=str)
         return hashlib.blake2b(made_of.encode() + self.rows.content()).hexdigest()
+
+
+class Tasks(Sequence[Work]):
+    """Some of what a plan has to compute.
+
+    Args:
+        plan: Plan.
+        numbers: of them, in the order of its `task_keys`.
+    """
+
+    def __init__(self, plan: Plan, numbers: np.ndarray) -> None:
+        self.plan, self.numbers = plan, numbers
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    @overload
+    def __getitem__(self, at: int) -> Work: ...
+
+    @overload
+    def __getitem__(self, at: slice) -> list[Work]: ...
+
+    def __getitem__(self, at: int | slice) -> Work | list[Work]:
+        if isinstance(at, slice):
+            return [self[k] for k in range(*at.indices(len(self)))]
+        plan = self.plan
+        copy, case = divmod(int(self.numbers[at]), len(plan))
+        key = plan.keys[case]
+        return (plan.rows[case], as_rod(key), "rod") if copy else (plan.rows[case], key, plan.spec.model)

@@ -1,17 +1,18 @@
 """Run the missing cases of a plan, and record each as it ends."""
 
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+import numpy as np
+
 from coilset.model.sweep.engines.pool import Pool, Record, Task
 from coilset.model.sweep.journal import Journal, journals, read_records
-from coilset.model.sweep.keys import Model
-from coilset.model.sweep.packed import Row
-from coilset.model.sweep.plan import Plan
+from coilset.model.sweep.packed import Strings
+from coilset.model.sweep.plan import Plan, Tasks, Work
 from coilset.model.sweep.shards import WHOLE, Shard
 
 AHEAD = 2  # messages submitted per worker, so that none is idle
@@ -19,19 +20,22 @@ MESSAGE_SECONDS = 0.5  # of work in one message: short cases share one, which co
 MOST_TASKS = 500  # of one message
 
 
-def finished(folder: str | Path, retry: bool) -> set[str]:
+def finished(folder: str | Path, retry: bool) -> Strings:
     """Keys of the cases in the journals of a folder, without the failed ones if they are to be rerun."""
     done = (record for path in journals(folder) for record in read_records(path))
-    return {record["key"] for record in done if not (retry and record["status"] == "failed")}
+    return Strings(record["key"] for record in done if not (retry and record["status"] == "failed"))
 
 
-def missing(plan: Plan, done: Collection[str], shard: Shard = WHOLE) -> Iterator[tuple[Row, str, Model]]:
-    """Inputs, key and model of what is not in `done`, each once; of a shard, its cases by each model."""
-    seen = set(done)
-    for number, (row, key, model) in enumerate(plan.tasks()):
-        if shard.has(number % len(plan)) and key not in seen:
-            seen.add(key)
-            yield row, key, model
+def missing(plan: Plan, done: Iterable[str], shard: Shard = WHOLE) -> Sequence[Work]:
+    """What is not in `done`, each once; of a shard, its cases by each model."""
+    keys, numbers = plan.task_keys, np.array(shard.cases(len(plan)), dtype=int)
+    numbers = np.concatenate([numbers, len(plan) + numbers[numbers < plan.spec.rods]])
+    _, first = np.unique(keys[numbers], return_index=True)
+    numbers = numbers[np.sort(first)]
+    there = np.sort(done.array if isinstance(done, Strings) else Strings(done).array)
+    if len(there):
+        numbers = numbers[there[np.searchsorted(there[:-1], keys[numbers])] != keys[numbers]]
+    return Tasks(plan, numbers)
 
 
 @dataclass
@@ -55,7 +59,7 @@ class Limits:
 
 def run(
     plan: Plan,
-    todo: Iterable[tuple[Row, str, Model]],
+    todo: Iterable[Work],
     pool: Pool,
     journal: Journal,
     report: Callable[[Record], object] = lambda record: None,

@@ -44,9 +44,9 @@ class Shard:
             )
         return cls(int(found[1]), int(found[2]))
 
-    def has(self, case: int) -> bool:
-        """Whether a case of the plan, counted from 0, belongs to it."""
-        return case % self.count == self.number - 1
+    def cases(self, total: int) -> range:
+        """Which cases of a plan of so many, counted from 0, belong to it."""
+        return range(self.number - 1, total, self.count)
 
     @property
     def journal(self) -> str:

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +50,7 @@ class Study:
         self.plan, self.folder = Plan(plan), Path(folder)
         make(self.folder)
         self._journal = Journal(self.folder / "journal.jsonl")
-        self._done, self._keys = finished(self.folder, retry=False), Keys()
+        self._done, self._keys = set(finished(self.folder, retry=False)), Keys()
         self._asked: set[str] = set()
         self._extra: list[tuple[tuple[Any, ...], str]] = []
 
@@ -66,7 +65,7 @@ class Study:
             InputError: an input is missing or unknown, or a case cannot be.
         """
         if values is None:
-            rows = [(row, key) for row, key, _model in islice(missing(self.plan, self._done | self._asked), n)]
+            rows = [(row, key) for row, key, _model in missing(self.plan, self._done | self._asked)[:n]]
         else:
             rows = [self._given(inputs) for inputs in values]
             self._extra += rows

@@ -20,7 +20,7 @@ from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.spring_costs import comparison, cost_table
 from coilset.verification.benchmarks.everyday import MEASURED, everyday, launchers, of_a_new_command
 from coilset.verification.benchmarks.measure import STAGES, per_element
-from coilset.verification.benchmarks.million import million
+from coilset.verification.benchmarks.million import FILES, interrupted, million
 from coilset.verification.benchmarks.process import read_json
 from coilset.verification.benchmarks.springs import press_springs
 
@@ -99,20 +99,23 @@ def bench_springs(out: str, count: int, against: str | None = None) -> None:
 
 
 def bench_million(out: str, fraction: float) -> None:
-    """Run a sweep of a fraction of a million cases; see `coilset bench --help`.
+    """Run a sweep of a fraction of a million cases, or carry on with it; see `coilset bench --help`.
 
     Raises:
+        InputError: the folder has an interrupted run of another fraction.
         CoilsetError: a command failed, or a case is missing.
     """
     environment, console, folder = dict(os.environ), Console(), Path(out)
     make(folder)
-    clear(folder, ("million.yaml", "million.json"))
-    shutil.rmtree(folder / "million", ignore_errors=True)
-    found = million(folder, fraction, environment, console.say)
+    before = interrupted(folder, fraction)
+    if before is None:
+        clear(folder, FILES)
+        shutil.rmtree(folder / "million", ignore_errors=True)
+    found = million(folder, fraction, environment, console.say, before)
     each = 1e3 * found.run_seconds / (found.uniform + found.rods)
     console.print(
         f"{found.uniform:,} uniform rods and {found.rods:,} rods in {found.run_seconds:,.0f} s, {each:.2f} ms a case, "
-        f"killed three times: {found.repeated} cases computed twice, {found.failed} failed\n"
+        f"killed three times, carried on {found.carried_on} times: {found.repeated} cases computed twice, {found.failed} failed\n"
         f"collected again in {found.collect_seconds:,.0f} s; memory of the leading process {found.run_GiB:.2f} GiB, of "
         f"collecting {found.collect_GiB:.2f} GiB\n"
         f"on disk {found.journal_bytes:,.0f} bytes a case in the journal, {found.parquet_bytes:,.0f} in Parquet"

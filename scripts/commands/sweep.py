@@ -132,14 +132,16 @@ def _lead(plan: Plan, out: Path, options: Options, pool: Pool, console: Console)
     shard, limits = options.shard, Limits(options.until, options.budget, time.monotonic())
     done = finished(out, options.retry)
     with closing(Journal(out / shard.journal, locked=shard.count == 1)) as journal:
-        total, left = (sum(1 for _case in missing(plan, keys, shard)) for keys in ((), done))
+        total, todo = len(missing(plan, (), shard)), missing(plan, done, shard)
+        left = len(todo)
+        del done
         for notice in plan.notices:
             console.warn(notice)
         share = f", shard {shard.number} of {shard.count}" if shard.count > 1 else ""
         console.say(f"{plan.path.name}{share}: {total} cases, {total - left} done already, {pool.workers} at a time")
         progress = Bar(left, console)
         with progress.bar:
-            run(plan, missing(plan, done, shard), pool, journal, progress.report, limits)
+            run(plan, todo, pool, journal, progress.report, limits)
         if progress.done < left:
             console.print(f"stopped at its limit with {left - progress.done} cases left; --resume continues")
 
@@ -183,7 +185,7 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
         console.say(f"journal in {out / options.shard.journal}; when all shards are done, --collect joins them")
         return sum(record["status"] == "failed" for record in read_records(out / options.shard.journal))
     clear(out, ("sweep.parquet", "report.html"))  # of other cases
-    records = Records(out, (key for _row, key, _model in plan.tasks()))
+    records = Records(out, plan.task_keys)
     counts = records.counts
     if parquet.write(out / "sweep.parquet", plan, records) is None:
         console.warn("sweep.parquet is not written: the package pyarrow is not installed")
