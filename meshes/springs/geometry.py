@@ -280,7 +280,7 @@ class Spring:
         """Greatest width of the wire across the coil's axis over its diameter or height; 1 of round wire."""
         return 1.0 if self.section is None else 0.5 * float(self.section.high[0] - self.section.low[0])
 
-    @property
+    @cached_property
     def free_length(self) -> float:
         """Distance between the seats that touch the unloaded coil, mm; with hooks that between their insides."""
         ends = [self.centre_line(t)[2] for t in self.held]
