@@ -82,3 +82,42 @@ def drive(
         counts.append(outcome.iterations)
         after()
     return counts
+
+
+def layered_bar(
+    length: float,
+    radius: float,
+    elements: int,
+    y: np.ndarray,
+    area: np.ndarray,
+    moduli: Mapping[str, float],
+    way: np.ndarray,
+) -> np.ndarray:
+    """Forces of a cantilever with linear kinematic hardening, whose tip goes to the deflections `way`, mm; in N.
+
+    Args:
+        length, radius, elements: of the bar, mm.
+        y, area: height and area of the section's layers, mm, mm².
+        moduli: E, G, yield_stress and H, the slope of the axial stress over the plastic strain, MPa.
+        way: deflections of the tip along y.
+
+    Raises:
+        SolveError: if a step does not converge.
+    """
+    E, G, H, k0 = moduli["E"], moduli["G"], moduli["H"], 2.0 / 3.0 * moduli["yield_stress"] ** 2  # k0: k² of deviators
+    data = library.load("linear_kinematic").data.model_dump()
+    constants = {
+        "elasticity": {"G": G, "nu": E / 2.0 / G - 1.0},
+        "isotropic": {"k0_squared": k0},
+        "kinematic": {"a5": 1.0, "a6": 2.0 / 3.0 * H / np.sqrt(6.0 * k0), "a7": 0.0},
+    }
+    data["temperatures"] = [data["temperatures"][0] | constants]
+    aside = np.sqrt((1.0 - (y / radius) ** 2) / 3.0)  # two points a layer, so that the bar is stiff in all directions
+    both = np.concatenate([np.stack([y / radius, z], axis=1) for z in (aside, -aside)])
+    rule = DiskRule(both, np.tile(0.5 * area / area.sum(), 2), "layers")
+    bar = chain(straight(length, elements), radius, Law(MaterialFile.model_validate(data)), rule)
+    forces, tip = [], bar.dof(elements, Y)
+    for change in np.diff(way, prepend=0.0):
+        drive(bar, 1, {tip: change})
+        forces.append(bar.force(tip))
+    return np.array(forces)

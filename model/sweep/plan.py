@@ -24,7 +24,6 @@ from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.shards import WHOLE, Shard
 from coilset.model.sweep.spec import SweepSpec
 
-
 Work = tuple[Row, str, Model]  # inputs, key and model of what is to be computed
 
 

@@ -115,7 +115,8 @@ def bench_million(out: str, fraction: float) -> None:
     each = 1e3 * found.run_seconds / (found.uniform + found.rods)
     console.print(
         f"{found.uniform:,} uniform rods and {found.rods:,} rods in {found.run_seconds:,.0f} s, {each:.2f} ms a case, "
-        f"killed three times, carried on {found.carried_on} times: {found.repeated} cases computed twice, {found.failed} failed\n"
+        f"killed three times, carried on {found.carried_on} times: {found.repeated} cases computed twice, "
+        f"{found.failed} failed\n"
         f"collected again in {found.collect_seconds:,.0f} s; memory of the leading process {found.run_GiB:.2f} GiB, of "
         f"collecting {found.collect_GiB:.2f} GiB\n"
         f"on disk {found.journal_bytes:,.0f} bytes a case in the journal, {found.parquet_bytes:,.0f} in Parquet"

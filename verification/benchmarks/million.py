@@ -84,7 +84,9 @@ def interrupted(folder: Path, fraction: float) -> Progress | None:
     if not kept.exists() or not plan.exists():
         return None
     if plan.read_text(encoding="utf-8") != _plan(*_numbers(fraction)):
-        raise InputError("holds an interrupted run of another fraction; remove it, or give another folder", "--out", folder)
+        raise InputError(
+            "holds an interrupted run of another fraction; remove it, or give another folder", "--out", folder
+        )
     return Progress(**json.loads(kept.read_text(encoding="utf-8")))
 
 
@@ -222,7 +224,7 @@ def _run(command: list[str], environment: Mapping[str, str], enough: Callable[[]
             stdout=subprocess.DEVNULL,
             stderr=said,
             start_new_session=True,
-            preexec_fn=end_with_parent,  # noqa: PLW1509 (one thread)
+            preexec_fn=end_with_parent,
         )
         killed = False
         while not (ended := os.wait4(process.pid, os.WNOHANG))[0]:
