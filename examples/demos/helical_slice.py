@@ -1,27 +1,25 @@
 # %% [markdown]
 # # The helical slice: a whole spring in one section of its wire
 #
-# A long spring under axial load stays a helix, and all sections of its wire deform alike, so that one section is the
-# whole three-dimensional problem. This script presses a plastic spring and releases it, with nothing but DOLFINx and
-# UFL's derivatives; coilset's slice, which has another measure of strain and compiled loops, checks its numbers.
+# A long spring under axial load stays a helix whose sections all deform alike, so that one section is the whole
+# three-dimensional problem. Here a plastic spring is pressed and released with nothing but UFL's derivatives; coilset's
+# slice, which has another measure of strain and compiled loops, checks the numbers.
 #
 # A point of the wire is $x = Q(t)\, x_0(ξ, η) + h t\, e_z$: the section $x_0$ is turned about the spring's axis by $t$
 # and raised by $h t$. At $t = 0$ the tangents of $x$ along $ξ$, $η$ and $t$ are the columns of
 # $\hat F = [\, x_{0,ξ} \;|\; x_{0,η} \;|\; e_z × x_0 + h\, e_z \,]$, linear in $x_0$ and the rise $h$ together.
 
 # %%
-import basix
 import basix.ufl
 import gmsh
-import matplotlib as mpl
 import matplotlib.figure
-import matplotlib.patches
 import numpy as np
 import scipy.sparse.linalg
 import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
+from coilset.api import Case, slice_
 from coilset.model.base.compat import mesh_from_gmsh  # dolfinx.io.gmshio.model_to_mesh, under its names so far
 
 d, D, pitch, turns = 5.0, 30.0, 11.0, 5.0  # mm
@@ -31,7 +29,8 @@ G, bulk = E / 2.0 / (1.0 + ν), E / 3.0 / (1.0 - 2.0 * ν)
 # %% [markdown]
 # ## The section
 #
-# Curved triangles; $ξ$ points away from the spring's axis, $η$ upward, and both are normal to the wire.
+# Curved triangles; $ξ$ points away from the spring's axis, $η$ upward, both normal to the wire. Each point has a state:
+# six plastic strains and their accumulated length.
 
 # %%
 gmsh.initialize(["", "-v", "1"], readConfigFiles=False, interruptible=False)
@@ -43,12 +42,11 @@ gmsh.model.mesh.generate(2)
 gmsh.model.mesh.setOrder(2)
 domain = mesh_from_gmsh(gmsh.model, MPI.COMM_SELF, gdim=2)[0]
 gmsh.finalize()
-
 V = fem.functionspace(domain, ("Lagrange", 2, (3,)))
 points, weights = basix.make_quadrature(basix.CellType.triangle, 2)
 at_points = basix.ufl.quadrature_element("triangle", value_shape=(7,), points=points, weights=weights)
 S = fem.functionspace(domain, at_points)
-u, state = fem.Function(V), fem.Function(S)  # of the section; plastic strains of its points, and their length
+u, state = fem.Function(V), fem.Function(S)
 rise = fem.Function(fem.functionspace(domain, ("DG", 0)))  # h, the same everywhere
 rise.x.array[:] = h0 = pitch / 2.0 / np.pi
 dx = ufl.dx(domain=domain, metadata={"quadrature_degree": 2})
@@ -64,19 +62,17 @@ dx = ufl.dx(domain=domain, metadata={"quadrature_degree": 2})
 # %%
 def tangents(x, h):
     """The columns of F̂."""
-    along = [-x[1], x[0], h]
-    return ufl.as_matrix([[x[i].dx(0), x[i].dx(1), along[i]] for i in range(3)])
+    return ufl.as_matrix([[x[i].dx(0), x[i].dx(1), (-x[1], x[0], h)[i]] for i in range(3)])
 
 
-R = 0.5 * D
-wire, upward = (np.array(a) / np.hypot(R, h0) for a in ([0.0, R, h0], [0.0, -h0, R]))
+R, slope = 0.5 * D, np.arctan(2.0 * h0 / D)
+wire, upward = (ufl.as_vector([0.0, *a]) for a in ((np.cos(slope), np.sin(slope)), (-np.sin(slope), np.cos(slope))))
 ξ, η = ufl.SpatialCoordinate(domain)
-start = ufl.as_vector([R + ξ, float(upward[1]) * η, float(upward[2]) * η])
+start = ufl.as_vector([R + ξ, 0.0, 0.0]) + η * upward
 inverse, volume = ufl.inv(tangents(start, h0)), abs(ufl.det(tangents(start, h0)))
 F = tangents(start + u, rise) * inverse
-plastic = ufl.as_matrix(
-    [[state[0], state[3], state[4]], [state[3], state[1], state[5]], [state[4], state[5], state[2]]]
-)
+places = [[0, 3, 4], [3, 1, 5], [4, 5, 2]]
+plastic = ufl.as_matrix([[state[k] for k in row] for row in places])
 elastic = 0.5 * (F.T * F - ufl.Identity(3)) - plastic
 trial = 2.0 * G * ufl.dev(elastic)
 equivalent = ufl.sqrt(1.5 * ufl.inner(trial, trial) + 1e-12)
@@ -91,12 +87,11 @@ stress = 2.0 * G * (ufl.dev(elastic) - flow) + bulk * ufl.tr(elastic) * ufl.Iden
 # the first for both, through the law.
 
 # %%
-one = fem.Constant(domain, 1.0)
 strain_change = ufl.sym(F.T * tangents(ufl.TestFunction(V), 0.0) * inverse)
 work = ufl.inner(stress, strain_change) * volume * dx
 residual, tangent = fem.form(work), fem.form(ufl.derivative(work, u))
-column = fem.form(ufl.derivative(work, rise, one))
-lift = ufl.as_matrix([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # ∂F̂/∂h
+column = fem.form(ufl.derivative(work, rise, fem.Constant(domain, 1.0)))
+lift = ufl.as_matrix(np.diag([0.0, 0.0, 1.0]).tolist())  # ∂F̂/∂h
 pull = fem.form(ufl.inner(stress, ufl.sym(F.T * lift * inverse)) * volume * dx)
 pairs = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)]
 new_state = fem.Expression(state + ufl.as_vector([*(flow[i, j] for i, j in pairs), added]), points)
@@ -124,7 +119,7 @@ def step(shortening):
 # %% [markdown]
 # ## Press and release
 #
-# Ten steps to nine tenths of the way to block, two back, and secants to zero force.
+# Ten steps to nine tenths of the way to block, two back, and secants to zero force; then the same by coilset.
 
 # %%
 deepest = 0.9 * turns * (pitch - d)
@@ -133,15 +128,10 @@ force = [0.0, *(step(one_way) for one_way in way[1:])]
 while abs(force[-1]) > 1e-5 * max(force):
     way.append(way[-1] - force[-1] * (way[-1] - way[-2]) / (force[-1] - force[-2]))
     force.append(step(way[-1]))
-
-# %%
-from coilset.api import Case, slice_  # noqa: E402
-
 spring = {"wire_diameter": d, "mean_diameter": D, "turns": turns, "pitch": pitch}
 loading = [{"to": {"travel": deepest}, "steps": 10}, {"to": {"force": 0}, "steps": 4}]
 theirs = slice_(Case({"spring": spring, "material": "linear_isotropic", "ends": "clamped", "loading": loading}))
-print(f"{force[10]:.2f} N at {deepest:g} mm, coilset {theirs.force[9]:.2f} N")
-print(f"set {way[-1]:.3f} mm, coilset {theirs.set:.3f} mm")
+print(f"{force[10]:.2f} N, coilset {theirs.force[9]:.2f} N; set {way[-1]:.3f} mm, coilset {theirs.set:.3f} mm")
 assert abs(force[10] / theirs.force[9] - 1.0) < 1e-3
 assert abs(way[-1] / theirs.set - 1.0) < 3e-4
 
@@ -151,29 +141,16 @@ assert abs(way[-1] / theirs.set - 1.0) < 3e-4
 # The shear about the wire's axis, at the points of the section: what the outer fibres keep, the core balances.
 
 # %%
-outward = ufl.as_vector([1.0, 0.0, 0.0])
-t, b = (ufl.as_vector(a.tolist()) for a in (wire, upward))
-about = (ξ * ufl.dot(t, stress * b) - η * ufl.dot(t, stress * outward)) / ufl.sqrt(ξ**2 + η**2)
+about = (ξ * ufl.dot(wire, stress * upward) - η * ufl.dot(wire, stress)[0]) / ufl.sqrt(ξ**2 + η**2)
 residual_shear = fem.Expression(about, points).eval(domain, cells).ravel()
 place = fem.Expression(ufl.as_vector([ξ, η]), points).eval(domain, cells).reshape(-1, 2)
-with mpl.rc_context({"font.size": 9}):
-    figure = mpl.figure.Figure(figsize=(8.0, 3.4), layout="constrained")
-    left, right = figure.subplots(1, 2, width_ratios=[1.2, 1.0])
-    left.plot(way, force, "o-", ms=4, label="this script")
-    left.plot([0.0, *theirs.travel], [0.0, *theirs.force], "k+", label="coilset's slice")
-    left.set(xlabel="travel, mm", ylabel="force, N", title=f"{turns:g} turns pressed and released")
-    left.grid(lw=0.3)
-    left.legend()
-    limit = 50.0 * np.ceil(np.abs(residual_shear).max() / 50.0)
-    shades = np.linspace(-limit, limit, 17)
-    shown = right.tricontourf(*place.T, residual_shear, levels=shades, cmap="RdBu_r")
-    figure.colorbar(shown, ax=right, label="shear about the wire's axis, MPa", ticks=shades[::4])
-    right.add_patch(mpl.patches.Circle((0.0, 0.0), 0.5 * d, fill=False, lw=0.8))
-    right.set(
-        aspect="equal",
-        xlim=(-2.6, 2.6),
-        ylim=(-2.6, 2.6),
-        xlabel="outward ξ, mm",
-        ylabel="upward η, mm",
-        title="what stays after release",
-    )
+figure = matplotlib.figure.Figure(figsize=(8.0, 3.4), layout="constrained")
+left, right = figure.subplots(1, 2, width_ratios=[1.2, 1.0])
+left.plot(way, force, "o-", ms=4, label="this script")
+left.plot([0.0, *theirs.travel], [0.0, *theirs.force], "k+", label="coilset's slice")
+left.set(xlabel="travel, mm", ylabel="force, N", title=f"{turns:g} turns pressed and released")
+left.legend()
+limit = 50.0 * np.ceil(np.abs(residual_shear).max() / 50.0)
+shown = right.tricontourf(*place.T, residual_shear, levels=np.linspace(-limit, limit, 17), cmap="RdBu_r")
+figure.colorbar(shown, ax=right, label="shear about the wire's axis, MPa")
+right.set(aspect="equal", xlabel="outward ξ, mm", ylabel="upward η, mm", title="what stays after release")
