@@ -13,6 +13,7 @@ from coilset.model.base.entry import Strict, Whole, shortened
 from coilset.model.results.records.summary_entries import NUMBERS
 from coilset.model.results.records.working import is_working_number
 
+AT_ONCE = 65_536  # quantiles, each of which takes 200 bytes while it is computed
 LISTED = 8  # maximum number of names in a message
 RESPONSES = (*NUMBERS, "seconds")  # of a case's summary, and its duration
 
@@ -104,7 +105,8 @@ class Normal(Input):
     def at(self, q: Sequence[float] | np.ndarray) -> np.ndarray:
         """Values at the probabilities `q`, the quantiles of the truncated normal distribution."""
         scatter = stats.truncnorm(-self.sigmas, self.sigmas, loc=self.mean, scale=self.tolerance / self.sigmas)
-        return scatter.ppf(q)
+        q = np.asarray(q)
+        return np.concatenate([scatter.ppf(part) for part in np.array_split(q, len(q) // AT_ONCE + 1)])
 
 
 def _kind(value: Any) -> str:
