@@ -10,17 +10,20 @@ SIAM Rev. 60 (2018) 550). A probability is the mean of an indicator; its control
 regression of r on u. A quantile is where the probability so estimated has its level.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from scipy import stats
 from scipy.optimize import isotonic_regression
 
 from coilset.model.results.records.units import quantity
 from coilset.model.sweep.plan import Plan
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LEVEL = 0.95
 FEWEST = 8  # rods, below which no interval is given
@@ -108,7 +111,7 @@ def _is_indicator(values: np.ndarray) -> bool:
     return bool(np.isin(values, (0.0, 1.0)).all())
 
 
-def of_response(data: xr.Dataset, name: str) -> ControlVariate:
+def of_response(data: "xr.Dataset", name: str) -> ControlVariate:
     """Estimates for a response of a sweep of uniform rods, some of which rods computed, too.
 
     Raises:
@@ -147,20 +150,19 @@ def of_parquet(path: str | Path, name: str) -> ControlVariate:
     return ControlVariate(rod[both], beside[both], uniform[np.isfinite(uniform)])
 
 
-def lines(plan: Plan, data: xr.Dataset, path: Path) -> Iterator[str]:
+def lines(plan: Plan, estimates_of: Callable[[str], ControlVariate]) -> Iterator[str]:
     """For people: mean and quantiles of the responses of rods, with their intervals.
 
     Args:
         plan: of the sweep.
-        data: its cases, or some of them.
-        path: of the Parquet file with all of them, which may be missing.
+        estimates_of: from the name of a response, `of_parquet` or `of_response` of this sweep.
     """
     if not plan.spec.rods:
         return
     yield "rods, from some of them and many uniform rods (95 % intervals):"
     for name in ("set_mm", "force_max_N"):
         try:
-            estimates = of_parquet(path, name) if path.exists() else of_response(data, name)
+            estimates = estimates_of(name)
         except ValueError as error:
             yield f"  {error}"
             continue

@@ -22,7 +22,7 @@ from coilset.model.sweep.plan import Plan
 if TYPE_CHECKING:
     import pyarrow as pa
 
-ROWS = 5_000  # of a row group, which is what memory holds at a time
+ROWS, BATCHES = 1_000, 5  # rows as Python objects at a time, and such batches in a row group: what memory holds
 
 
 def write(path: str | Path, plan: Plan, records: Records) -> int | None:
@@ -45,9 +45,14 @@ def write(path: str | Path, plan: Plan, records: Records) -> int | None:
     schema, count = _schema(pa, plan), 0
     words = [field.name for field in schema if field.type == pa.string()]  # a dictionary of numbers takes 1 MB a column
     with whole(path) as partial, pq.ParquetWriter(partial, schema, compression="zstd", use_dictionary=words) as writer:
+        group: list[pa.RecordBatch] = []
         for rows in _batches(plan, records):
             count += len(rows)
-            writer.write_table(pa.Table.from_pylist(rows, schema=schema))
+            group.append(pa.RecordBatch.from_pylist(rows, schema=schema))
+            if len(group) == BATCHES:
+                writer.write_table(pa.Table.from_batches(group))
+                group.clear()
+        writer.write_table(pa.Table.from_batches(group, schema))
     pa.default_memory_pool().release_unused()
     return count
 

@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +16,7 @@ from rich.table import Table
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.results.files.folder import clear, making, refuse_obstacles
-from coilset.model.sweep import parquet
+from coilset.model.sweep import multifidelity, parquet
 from coilset.model.sweep.engines.pool import Pool
 from coilset.model.sweep.engines.processes import Workers
 from coilset.model.sweep.journal import Journal, Records, journals, read_records
@@ -187,11 +188,14 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     clear(out, ("sweep.parquet", "report.html"))  # of other cases
     records = Records(out, plan.task_keys)
     counts = records.counts
-    if parquet.write(out / "sweep.parquet", plan, records) is None:
-        console.warn("sweep.parquet is not written: the package pyarrow is not installed")
+    of_rods, written = None, parquet.write(out / "sweep.parquet", plan, records)
     del records
+    if written is None:
+        console.warn("sweep.parquet is not written: the package pyarrow is not installed")
+    else:  # before xarray and matplotlib, so that memory need not hold both
+        of_rods = list(multifidelity.lines(plan, partial(multifidelity.of_parquet, out / "sweep.parquet")))
     from coilset.model.figures.png import write_png  # after the cases: xarray and matplotlib take half a second
-    from coilset.model.sweep import dataset, multifidelity
+    from coilset.model.sweep import dataset
     from coilset.model.sweep.figures import capability
     from coilset.model.sweep.figures.figures import FILES, draw
     from coilset.model.sweep.figures.limits import histogram
@@ -202,7 +206,7 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     if data.sizes["case"] < len(plan):
         console.say(f"sweep.nc and figures show {data.sizes['case']} of {len(plan)} cases; sweep.parquet has all")
     files, problems = draw(out, plan, data) if options.pictures else ([], [])
-    for line in multifidelity.lines(plan, data, out / "sweep.parquet"):
+    for line in multifidelity.lines(plan, partial(multifidelity.of_response, data)) if of_rods is None else of_rods:
         console.print(line)
     capable = capability.capabilities(data)
     for line in capability.lines(capable):

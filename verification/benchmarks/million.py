@@ -78,14 +78,16 @@ def interrupted(folder: Path, fraction: float) -> Progress | None:
     """Of the run in a folder, None if there is none or it has ended.
 
     Raises:
-        InputError: it is one of another fraction.
+        InputError: it is one of another fraction, or of another checkout's case.
     """
     plan, kept = folder / "million.yaml", folder / "progress.json"
     if not kept.exists() or not plan.exists():
         return None
     if plan.read_text(encoding="utf-8") != _plan(*_numbers(fraction)):
         raise InputError(
-            "holds an interrupted run of another fraction; remove it, or give another folder", "--out", folder
+            "holds an interrupted run of another fraction or checkout; remove it, or give another folder",
+            "--out",
+            folder,
         )
     return Progress(**json.loads(kept.read_text(encoding="utf-8")))
 
@@ -120,8 +122,8 @@ def million(
     watch = _Watch(progress, kept)
     for number, share in enumerate(KILLED_AT[progress.passed :], progress.passed + 1):
         report(f"until {share:.0%} of {uniform:,} presses and {rods:,} rods, then killed")
-        enough = round(share * (uniform + rods))
-        _run(command, environment, lambda enough=enough: watch.look() or records.count() >= enough)
+        records.enough = round(share * (uniform + rods))
+        _run(command, environment, lambda: watch.look() or records.reached())
         progress.passed = number
         watch.keep()
     report("the rest")
@@ -200,19 +202,19 @@ class _Watch:
 
 
 class _Lines:
-    """Counts the lines of a growing file, and reads each once."""
+    """Counts the lines of a growing file, which may not be there yet, and reads each once."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self._found, self._read = path, 0, 0
+        self.path, self.enough, self._found, self._read = path, 0, 0, 0
 
-    def count(self) -> int:
-        """So far; 0 if there is no file."""
+    def reached(self) -> bool:
+        """Whether there are `enough`."""
         if self.path.exists():
             with open(self.path, "rb") as file:
                 file.seek(self._read)
                 self._found += sum(chunk.count(b"\n") for chunk in iter(lambda: file.read(1 << 24), b""))
                 self._read = file.tell()
-        return self._found
+        return self._found >= self.enough
 
 
 def _run(command: list[str], environment: Mapping[str, str], enough: Callable[[], bool] = lambda: False) -> int:
