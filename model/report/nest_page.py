@@ -1,6 +1,5 @@
 """The page of a nest: total force, share of each spring, and the clearance between them."""
 
-import csv
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError, reading
 from coilset.model.base.style import round_end
 from coilset.model.figures.panels.panel import Panel, Trace, axis, curve, with_unit
@@ -41,9 +41,8 @@ def write_nest_report(folder: str | Path) -> Path:
         springs = {name: summary[name] for name in NAMES}
         summary["clearance_min_mm"], summary["warnings"]
     with reading(folder / FILE):
-        with (folder / FILE).open(encoding="utf-8", newline="") as file:
-            rows = list(csv.DictReader(file))
-        columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+        read = read_columns(folder / FILE)
+        columns = {name: read.numbers(name) for name in read.names}
     runs = {name: open_run(folder / name) for name, one in springs.items() if one is not None}
     if not runs:
         raise InputError("neither spring was reached by the seats", "", folder)

@@ -7,6 +7,7 @@ from mpi4py import MPI
 
 import coilset.open
 from coilset.model.base.errors import InputError
+from coilset.model.results.files.opened import table
 from coilset.scripts.commands.solve import solve
 
 CASE = """
@@ -31,3 +32,14 @@ def test_a_run_comes_with_its_numbers_and_units(tmp_path):
     assert json.loads(data.attrs["case"])["spring"]["wire_diameter"] == 5.0
     with pytest.raises(InputError, match="no results of a run"):
         coilset.open(tmp_path)
+
+
+def test_a_table_that_a_spreadsheet_saved_is_the_same(tmp_path):
+    rows = "step,travel_mm,force_N,torque_Nmm\n1,2.5,80.25,\n2,-5e-07,0.125,nan\n"
+    (tmp_path / "history.csv").write_text(rows)
+    (tmp_path / "saved.csv").write_bytes(b"\xef\xbb\xbf" + rows.replace(",", ";").replace(".", ",").encode())
+    first, second = (table(tmp_path / name) for name in ("history.csv", "saved.csv"))
+    assert first.identical(second)
+    assert first["travel_mm"].values.tolist() == [2.5, -5e-7]
+    assert first["torque_Nmm"].isnull().all()
+    assert first["step"].values.tolist() == [1, 2]

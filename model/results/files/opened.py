@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from coilset.model.base.columns import number, read_columns
 from coilset.model.base.errors import InputError, unreadable
 from coilset.model.results.records.units import unit_of
 
@@ -76,13 +77,17 @@ def current_names(data: xr.Dataset) -> xr.Dataset:
 
 
 def table(path: Path) -> xr.Dataset:
-    """Columns of a CSV as variables along `step`, NaN for empty fields."""
-    if not path.stat().st_size:
+    """Columns of a CSV as variables along `step`, NaN for empty fields; also as a spreadsheet saved it.
+
+    Raises:
+        InputError, ValueError: if it cannot be read, is empty.
+    """
+    columns = read_columns(path)
+    if not columns.names:
         raise ValueError("it is empty")
-    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8"))
-    names = rows.dtype.names or ()
-    if not names or len(rows.shape) == 0 or names == ("step",):
+    step, *names = columns.names
+    if not columns.rows or not names:
         return xr.Dataset()
-    number = names[0]  # of the step
-    columns = {name: ("step", rows[name], {"units": unit_of(name)}) for name in names if name != number}
-    return xr.Dataset(columns, coords={"step": rows[number].astype(int)})
+    values = {name: np.array([number(row.get(name)) for _, row in columns.rows]) for name in names}
+    variables = {name: ("step", values[name], {"units": unit_of(name)}) for name in names}
+    return xr.Dataset(variables, coords={"step": columns.numbers(step).astype(int)})
