@@ -195,25 +195,53 @@ def test_moduli_of_wires_of_the_tables_sizes(inches, of_A228, of_A227):
         assert wire(name).elastic(25.4 * (inches + 0.001)).shear_modulus < wanted
 
 
+NUMBER = {"value": 1.0, "sources": ["a"], "sure": "one source"}
+
+
+def own_file(**other):
+    """A file of one wire, with other numbers than those of steel."""
+    values = {"young_modulus": 206000.0, "shear_modulus": 79500.0, "density": 7.85e-6, "elastic_limit": 0.8}
+    values |= {"proof_stress": 0.9, "block_stress": 0.5}
+    common = {name: NUMBER | {"value": value} for name, value in values.items()}
+    common["block_stress"] |= {"of": "uncorrected stress"}
+    piece = {"form": "power", "diameters": [1, 2], "at_1_mm": 1, "exponent": 1} | other.pop("piece", {})
+    strength = {"pieces": [piece], "sources": ["a"], "sure": "one source"}
+    common |= {name: common[name] | change for name, change in other.items()}
+    sources = {"a": "A"}
+    return with_common(
+        {
+            "standard": "S",
+            "title": "T",
+            "sources": sources,
+            "common": common,
+            "wires": [{"grade": "G", "strength": strength}],
+        }
+    )
+
+
 def test_numbers_without_their_sources_are_refused():
-    number = {"value": 1.0, "sources": ["a"], "sure": "one source"}
-    strength = {"pieces": [{"form": "power", "diameters": [1, 2], "at_1_mm": 1, "exponent": 1}], **number}
-    strength.pop("value")
-    common = {name: number for name in ("young_modulus", "shear_modulus", "density", "elastic_limit", "proof_stress")}
-    common["block_stress"] = number | {"of": "uncorrected stress"}
-    file = {
-        "standard": "S",
-        "title": "T",
-        "sources": {"a": "A"},
-        "common": common,
-        "wires": [{"grade": "G", "strength": strength}],
-    }
-    assert WireFile.model_validate(with_common(file)).wires[0].strength.at(2.0) == 0.5
+    assert WireFile.model_validate(own_file()).wires[0].strength.at(2.0) == 0.5
     with pytest.raises(ValueError, match="the source 'b' is not among"):
-        WireFile.model_validate(with_common(file | {"common": common | {"density": number | {"sources": ["b"]}}}))
-    other = number | {"sure": "checked against a second source"}
+        WireFile.model_validate(own_file(density={"sources": ["b"]}))
     with pytest.raises(ValueError, match=r"needs 2 source\(s\), 1 given"):
-        WireFile.model_validate(with_common(file | {"common": common | {"density": other}}))
+        WireFile.model_validate(own_file(density={"sure": "checked against a second source"}))
+
+
+@pytest.mark.parametrize(
+    ("other", "message"),
+    [
+        ({"elastic_limit": {"value": 88.0}}, "elastic_limit is a part of Rm, 0.85 for 85 %, not 88"),
+        ({"elastic_limit": {"value": 0.95}}, "elastic_limit must be below proof_stress"),
+        ({"young_modulus": {"value": 206.0}, "shear_modulus": {"value": 79.5}}, "both in N/mm², not 206 and 79.5"),
+        ({"shear_modulus": {"value": 7950.0}}, "E must be 2 to 3 times G"),
+        ({"density": {"value": 7.85}}, "density is in kg/mm³, 7.85e-6 for steel, not 7.85"),
+        ({"piece": {"diameters": [2, 1]}}, "the diameters must ascend, not 2, 1"),
+        ({"density": {"value": None, "up_to": [2, 1], "values": [1e-6, 1e-6]}}, "the diameters must ascend"),
+    ],
+)
+def test_numbers_in_other_units_or_orders_are_refused(other, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        WireFile.model_validate(own_file(**other))
 
 
 def test_own_wires_stand_beside_those_of_standards(tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 import math
 from bisect import bisect_left
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -44,13 +45,18 @@ class Number(Sourced):
         table = self.up_to is not None and self.values is not None
         if (self.value is None) != table or (self.up_to is None) != (self.values is None):
             raise ValueError("give value, or up_to and values")
-        _same_length(self.up_to, self.values)
+        _fit_together(self.up_to, self.values)
         return self
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Those of all ranges."""
+        return self.values or (self.value or 0.0,)  # never 0: one of the two is given
 
     def at(self, diameter: float) -> float:
         """The number at a diameter, mm; the last range extends without limit."""
         if self.up_to is None or self.values is None:
-            return float(self.value or 0.0)  # never 0: one of the two is given
+            return self.numbers[0]
         return self.values[min(bisect_left(self.up_to, diameter), len(self.values) - 1)]
 
 
@@ -71,7 +77,7 @@ class Tolerance(Sourced):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        _same_length(self.up_to, self.plus_minus)
+        _fit_together(self.up_to, self.plus_minus)
         return self
 
     def at(self, diameter: float) -> float | None:
@@ -82,6 +88,11 @@ class Tolerance(Sourced):
 
 class _Piece(Strict):
     diameters: Pair
+
+    @model_validator(mode="after")
+    def _has_a_range(self) -> Self:
+        _ascend(self.diameters)
+        return self
 
     def covers(self, diameter: float) -> bool:
         """Whether the diameter is in the range of this piece, including both ends."""
@@ -121,7 +132,7 @@ class Table(_Piece):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        _same_length(self.at_, self.values)
+        _fit_together(self.at_, self.values)
         return self
 
     def at(self, diameter: float) -> float:
@@ -138,7 +149,7 @@ class Steps(_Piece):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        _same_length(self.up_to, self.values)
+        _fit_together(self.up_to, self.values)
         if self.up_to[-1] != self.diameters[1]:
             raise ValueError("the last of up_to must be the last of diameters")
         return self
@@ -203,6 +214,24 @@ class WireEntry(Strict):
     diameter_tolerance: Tolerance | None = None
     endurance: Annotated[tuple[Endurance, ...], Field(strict=False)] = ()
 
+    @model_validator(mode="after")
+    def _is_possible(self) -> Self:
+        """Shares of Rm in their order, moduli in the same unit: what an entry in % or in GPa is not."""
+        for name in ("block_stress", "elastic_limit", "proof_stress"):
+            greatest = max(getattr(self, name).numbers)
+            if greatest >= 1.0:
+                raise ValueError(f"{name} is a part of Rm, 0.85 for 85 %, not {greatest:g}")
+        for diameter in (*(self.elastic_limit.up_to or ()), *(self.proof_stress.up_to or (math.inf,))):
+            if self.elastic_limit.at(diameter) >= self.proof_stress.at(diameter):
+                raise ValueError("elastic_limit must be below proof_stress")
+        for diameter in (*(self.young_modulus.up_to or ()), *(self.shear_modulus.up_to or (math.inf,))):
+            young, shear = self.young_modulus.at(diameter), self.shear_modulus.at(diameter)
+            if not (2.0 < young / shear < 3.0 and young > 1000.0):
+                raise ValueError(f"E must be 2 to 3 times G, both in N/mm², not {young:g} and {shear:g}")
+        if max(self.density.numbers) > 1e-4:
+            raise ValueError(f"density is in kg/mm³, 7.85e-6 for steel, not {max(self.density.numbers):g}")
+        return self
+
     def sourced(self) -> list[tuple[str, Sourced]]:
         """All sourced entries by name."""
         found = [(name, value) for name, value in self if isinstance(value, Sourced)]
@@ -235,6 +264,14 @@ def with_common(data: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in data.items() if name != "common"} | {"wires": wires}
 
 
-def _same_length(first: Sequence[object] | None, second: Sequence[object] | None) -> None:
-    if first is not None and second is not None and len(first) != len(second):
-        raise ValueError(f"{len(first)} diameters but {len(second)} values")
+def _fit_together(diameters: Sequence[float] | None, values: Sequence[object] | None) -> None:
+    if diameters is None or values is None:
+        return
+    if len(diameters) != len(values):
+        raise ValueError(f"{len(diameters)} diameters but {len(values)} values")
+    _ascend(diameters)
+
+
+def _ascend(diameters: Sequence[float]) -> None:
+    if any(a >= b for a, b in pairwise(diameters)):
+        raise ValueError(f"the diameters must ascend, not {', '.join(f'{one:g}' for one in diameters)}")
