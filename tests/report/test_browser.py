@@ -49,7 +49,7 @@ def run_page(folder):
 def sweep_page(tmp_path_factory):
     """A thousand cases whose records are known: the set of case k is k mm, and every tenth failed."""
     out = tmp_path_factory.mktemp("thousand")
-    (out / "case.yaml").write_text(yaml.safe_dump(CASE))
+    (out / "case.yaml").write_text(yaml.safe_dump(CASE | {"limits": {"set_mm": [100, 900]}}))
     vary = {"spring.pitch": {"from": 11.0, "to": 13.0, "count": CASES}}
     (out / "sweep.yaml").write_text(yaml.safe_dump({"case": "case.yaml", "vary": vary}))
     plan = Plan(out / "sweep.yaml")
@@ -172,6 +172,19 @@ def test_one_of_a_thousand_is_found_and_opened_by_keyboard(browser, sweep_page):
     numbers = browser.run("return document.getElementById('numbers').textContent")
     assert "set, mm736" in numbers
     assert "147.2" in numbers  # its force
+
+
+def test_limits_have_their_table_and_histogram(browser, sweep_page):
+    browser.look(1280)
+    browser.open(sweep_page)
+    row = browser.run("return document.querySelector('[aria-label=\"limits and capability\"] tbody').innerText")
+    assert row.split("\t")[:2] == ["set, mm", "100 … 900"]
+    assert "tighten" in row
+    drawn(browser)
+    figure = "document.getElementById('limits_set_mm')"
+    notes = browser.run(f"return [...{figure}.querySelectorAll('.annotation-text')].map((one) => one.textContent)")
+    assert notes == ["100", "900"]
+    assert browser.run(f"return {figure}.querySelector('.scatterlayer path.js-line').getBBox().height") > 100
 
 
 def test_a_failed_case_says_why(browser, sweep_page):

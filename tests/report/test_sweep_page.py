@@ -129,6 +129,24 @@ def test_warnings_are_counted_in_words(folder):
     assert kinds <= KINDS.keys()
 
 
+def test_limits_have_their_table_and_histogram(tmp_path):
+    (tmp_path / "case.yaml").write_text(yaml.safe_dump(CASE | {"limits": {"set_mm": [0.0, 2.0]}}))
+    vary = {"spring.pitch": {"from": 11.0, "to": 13.0, "count": 40}}
+    (tmp_path / "sweep.yaml").write_text(yaml.safe_dump({"case": "case.yaml", "vary": vary}))
+    plan = Plan(tmp_path / "sweep.yaml")
+    with closing(Journal(tmp_path / "journal.jsonl")) as journal:
+        for number, key in enumerate(plan.keys):
+            record = {"status": "done", "reason": "", "summary": {"set_mm": 1.0 + 0.03 * number}, "steps": {}}
+            journal.append(record | {"key": key, "seconds": 1.0})
+    dataset.write(tmp_path / "sweep.nc", dataset.collect(plan, tmp_path))
+    page = write_sweep_report(tmp_path).read_text(encoding="utf-8")
+    table = re.search(r'aria-label="limits and capability">.*?</table>', page, re.DOTALL).group()
+    assert "<td>15 % " in table  # 6 of 40
+    assert "tighten pitch (100" in table
+    assert '"limits_set_mm"' in page  # its histogram
+    assert 'id="table"' in page  # saves the cases
+
+
 def test_a_sample_says_of_how_many_cases_it_is(plan, folder, tmp_path):
     dataset.write(tmp_path / "sweep.nc", dataset.collect(plan, folder, most=2))
     page = write_sweep_report(tmp_path).read_text(encoding="utf-8")
