@@ -33,6 +33,7 @@ POSSIBLE = {
     **dict.fromkeys(("G", "yield_stress", "rise", "rate", "compliance"), (0.0, math.inf)),
     **dict.fromkeys(("share", "friction"), (0.0, 1.0)),
 }
+LEAST_G = 1000.0  # MPa, below which it was given in GPa
 UNLIKE = "the law does not follow the readings"
 TESTED = Errors()
 MISFIT = 1.5  # residuals over the tester's errors, from which on the law does not follow the readings
@@ -208,6 +209,8 @@ def _check(known: Mapping[str, float], tester: Sequence[str]) -> None:
         low, high = POSSIBLE.get(name, (-math.inf, math.inf))
         if not low <= value <= high or (value == 0.0 and name in ("G", "yield_stress", "rate")):
             raise InputError(f"{name} must be {f'from 0 to {high:g}' if high == 1.0 else 'positive'}", "--known")
+        if name == "G" and value < LEAST_G:
+            raise InputError(f"G is in MPa, about 80000 for steel, not {value:g}", "--known")
 
 
 def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np.ndarray, OptimizeResult, int]:

@@ -91,7 +91,7 @@ class Progress:
         if found.failed:
             answer = f"fails: {found.reason}"
         else:
-            values = (
+            values = dict.fromkeys(  # a result may have a lower and an upper limit
                 f"{one.words} {value:.7g} {one.unit}"
                 for one, value in zip(search.conditions, found.values, strict=True)
             )

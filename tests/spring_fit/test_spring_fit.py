@@ -148,6 +148,7 @@ def test_the_advice_does_not_promise_what_a_threshold_hides(by_uniform_rods):
         ({"Q": 1.0}, [], "--known: 'Q' is none of G, yield_stress"),
         ({"share": 3.0}, [], "--known: share must be from 0 to 1"),
         ({"G": -80000.0}, [], "--known: G must be positive"),
+        ({"G": 79.5}, [], "--known: G is in MPa, about 80000 for steel, not 79.5"),
         ({}, ["frict"], "--tester: 'frict' is none of friction, compliance, offset"),
     ],
 )

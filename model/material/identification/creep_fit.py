@@ -234,7 +234,11 @@ def _check(tests: tuple[Readings, ...], time_exponent: float | None) -> None:
 
 def modulus(law: Law, tests: Readings) -> np.ndarray:
     """E or 3 G at the temperatures of the tests, shape (readings,), N/mm²."""
-    E, G = law.moduli([law.known(float(T)) for T in tests.temperature])
+    try:
+        E, G = law.moduli([law.known(float(T)) for T in tests.temperature])
+    except InputError as error:
+        hint = "give its elastic constants there, too, in another entry of `temperatures`"
+        raise InputError(f"{error.problem}; {hint}", error.place, error.file) from None
     return 3.0 * G if tests.kind == "torsion" else E
 
 
