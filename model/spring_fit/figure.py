@@ -30,7 +30,7 @@ def figure(fit: SpringFit) -> Figure:
             axes[1, k].axhline(0.0, color="k", lw=0.6)
             axes[1, k].set(xlabel="height in mm" if one.lengths else "travel in mm")
         axes[1, 0].set(ylabel="measured − fitted,\nover tester's error")
-        verdict = fit.misfit or f"the residuals are {fit.scatter:.2g} times the tester's errors, as scatter is"
+        verdict = fit.misfit or f"the residuals scatter, with {fit.scatter:.2g} of the tester's errors"
         sheet.suptitle(verdict[0].upper() + verdict[1:], fontsize=9)
     return sheet
 

@@ -93,6 +93,18 @@ def test_an_extension_spring_is_drawn_with_the_forces_of_its_table():
     formula, points = found.panels[0].traces
     assert formula["y"][[0, -1]] == pytest.approx([sheet.tension, exact])
     assert points["y"] == pytest.approx([exact])
+    assert ("top hook", "german") in [(line.label, line.value) for line in found.tables[0][1]]
+
+
+def test_a_torsion_spring_has_its_arms_on_one_page():
+    case = read_case(EXAMPLES / "springs" / "torsion.yaml")
+    sheet = case_sheet(case, case.spring.build(), None)
+    found = document(case, case.spring.build(), sheet, "", (), Words("de"))
+    rows = [(line.label.strip(), line.value) for _, lines in found.tables for line in lines]
+    assert rows.count(("gerade Länge", "25")) == 2
+    assert {"Schenkel oben", "mit eingespannten Schenkeln"} <= dict(rows).keys()
+    assert found.remarks[-1] == "the arms are not drawn"
+    assert WRITERS[".html"](found).decode().count("<svg") == 1
 
 
 def test_a_page_is_self_contained_and_escaped():

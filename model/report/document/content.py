@@ -29,6 +29,7 @@ FINISHED = {
     "residual_shear_inside_MPa": ("residual shear stress, inside", "MPa"),
     "force_max_N": ("greatest force of the run", "N"),
 }
+TAILS = ("hooks", "arms")
 POINTS = 200  # of the formula's curve
 
 
@@ -90,7 +91,7 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
     kind = "Extension spring" if sheet.pulled else "Torsion spring" if sheet.turns_to else "Compression spring"
     parts = sections(sheet)
     missing = [f"{row.label.strip()}: {row.why}" for _, rows in parts for row in rows if _empty(row) and row.why]
-    tables = [(words("Design"), list(_design(sheet, spring, words)))]
+    tables = [(words("Design"), [*_design(sheet, spring, words), *_tails(case, words)])]
     tables += [(words(title), [_line(row, words) for row in rows if not _empty(row)]) for title, rows in parts]
     summary = sheet.found.summary if sheet.found else {}
     tables += [
@@ -107,7 +108,7 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
         [(title, lines) for title, lines in tables if lines],
         bool(run),
         [_translated(panel, words) for panel in _panels(sheet, limits)],
-        [*missing, *(["the hooks are not drawn"] if spring.has_tails else []), *remarks],
+        [*missing, *(f"the {kind} are not drawn" for kind in TAILS if getattr(case.spring, kind, None)), *remarks],
         words,
     )
 
@@ -129,6 +130,20 @@ def _design(sheet: Sheet, spring: Spring, words: Words) -> Iterator[Line]:
     yield Line(words("total turns nt"), words.number(s.turns))
     yield Line(words("outer diameter De"), words.number(s.D + width), unit="mm")
     yield Line(words("inner diameter Di"), words.number(s.D - width), unit="mm")
+
+
+def _tails(case: Case, words: Words) -> Iterator[Line]:
+    """The hooks of an extension spring, the arms of a torsion spring."""
+    hooks, arms = (getattr(case.spring, name, None) for name in TAILS)
+    for end in ("bottom", "top"):
+        if hook := getattr(hooks, end, None):
+            yield Line(words(f"{end} hook"), words(hook.shape))
+        if arm := getattr(arms, end, None):
+            yield Line(words(f"{end} arm"), words(arm.direction))
+            yield Line(words("  straight part"), words.number(arm.length), unit="mm")
+            for bend in arm.bends:
+                yield Line(words(f"  bent {bend.towards} by"), words.number(bend.angle), unit="°")
+                yield Line(words("  straight behind the bend"), words.number(bend.length), unit="mm")
 
 
 def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Iterator[Line]:

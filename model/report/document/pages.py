@@ -1,4 +1,4 @@
-"""The data sheet on A4: one page, and a second one with the diagrams and what the first one has no room for."""
+"""The data sheet on A4: one page, and a second one for diagrams and what the first one has no room for."""
 
 import textwrap
 from collections.abc import Iterator, Sequence
@@ -25,14 +25,20 @@ Item = tuple[str, Line | None]  # a heading, or a line of a table
 
 
 def pages(made: Document) -> list[Figure]:
-    """Figures of A4 in the look of coilset."""
+    """Figures of A4 in the look of coilset: one where all is on it, or two."""
     with mpl.rc_context(STYLE):
-        first, axes = _page(made, 1)
+        first, axes = _page(made)
         _head(axes, made)
         bottom = _drawing(axes, made.drawing, HEIGHT - MARGIN - HEAD)
         _numbers(axes, made)
         rest = _columns(axes, list(_items(made)), bottom - 6.0, made)
-        second, axes = _page(made, 2)
+        if not rest and not made.panels:
+            _number(axes, made, 1, 1)
+            _remarks(axes, made)
+            return [first]
+        _number(axes, made, 1, 2)
+        second, axes = _page(made)
+        _number(axes, made, 2, 2)
         top = HEIGHT - MARGIN - 6.0
         axes.text(MARGIN, top + 3.0, f"{made.title} {dict(made.head).get(made.words('part'), '')}".strip(), fontsize=9)
         if made.panels:
@@ -42,15 +48,18 @@ def pages(made: Document) -> list[Figure]:
     return [first, second]
 
 
-def _page(made: Document, number: int) -> tuple[Figure, Axes]:
+def _page(made: Document) -> tuple[Figure, Axes]:
     """A figure and axes over all of it, in mm from its lower left corner."""
     figure = Figure(figsize=(WIDTH / INCH, HEIGHT / INCH))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0.0, WIDTH), ylim=(0.0, HEIGHT))
     axes.set_axis_off()
-    axes.text(WIDTH - MARGIN, 6.0, made.words(f"page {number} of 2"), fontsize=SMALL, ha="right", color="0.4")
     axes.text(MARGIN, 6.0, f"coilset · {made.basis}", fontsize=SMALL, color="0.4")
     return figure, axes
+
+
+def _number(axes: Axes, made: Document, page: int, pages: int) -> None:
+    axes.text(WIDTH - MARGIN, 6.0, made.words(f"page {page} of {pages}"), fontsize=SMALL, ha="right", color="0.4")
 
 
 def _head(axes: Axes, made: Document) -> None:
@@ -161,7 +170,7 @@ def _diagrams(figure: Figure, made: Document, top: float, beside: bool) -> float
 
 
 def _remarks(axes: Axes, made: Document) -> None:
-    """At the foot of the second page."""
+    """At the foot of the last page."""
     lines = [part for text in made.remarks for part in textwrap.wrap(f"– {text}", 150, subsequent_indent="   ")]
     y = MARGIN + 1.0 + 2.9 * len(lines)
     if not lines:
