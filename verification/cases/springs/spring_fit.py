@@ -6,8 +6,9 @@ is added. The law is Voce's, half of the rise back stress: too little to flow ba
 hardening must come out as not determined. The intervals hold all constants together with 95 % confidence: of 40 sets 2
 may have one outside, and 4 or more are allowed by chance in one of twenty such series.
 
-The set of a third spring, pressed to 95 %, is predicted by the whole rod with the constants of each of the first five
-sets. The same readings fitted by a law without hardening, and by the thesis's form, show what a wrong law looks like.
+The set of a third spring, pressed to 95 %, is predicted by the whole rod with the constants of five more sets: on some of
+the 40 it was decided to take the middle of a share that is not determined, so that these could not fail. The same
+readings fitted by a law without hardening show what a wrong law looks like.
 """
 
 import contextlib
@@ -28,7 +29,7 @@ from coilset.model.spring_fit.pressing import Pressing
 from coilset.verification.study import Study
 
 FAST = False
-SETS, READINGS, PREDICTED = 40, 40, 5
+SETS, READINGS, FRESH = 40, 40, range(40, 45)  # FRESH: seeds of the sets that predict
 FORCE, TRAVEL = 0.005, 0.02  # noise, of each force and in mm
 PARTS, THIRD = (0.55, 0.8), 0.95  # of the travel to block
 TRUE = {"G": 80000.0, "yield_stress": 500.0, "rise": 800.0, "rate": 300.0, "share": 0.5}
@@ -108,7 +109,9 @@ def run(study: Study) -> None:
         kind="at_most",
     )
     true = rods.whole(clean[0], Form("voce", 0.3, 293.15).material(TRUE, TRIAL), [THIRD * furthest, None])[1].free
-    for seed, fit in enumerate(fits[:PREDICTED]):
+    for seed in FRESH:
+        rng = np.random.default_rng(seed)
+        fit = fit_springs([noisy(one, rng) for one in clean], like=fits[0])
         material = fit.model.form.material(fit.values, TRIAL)
         found = rods.whole(clean[0], material, [THIRD * furthest, None])[1].free
         study.check(f"set at a third height, constants of set {seed}, mm", found, true, "the true constants", 0.01)
