@@ -37,6 +37,7 @@ KINDS = {
     "limit": "a result is outside the limits of the case",
     "unknown error": "the error of the steps could not be estimated",
     "unstable": "states are unstable",
+    "warping degree": "the polynomials of the sections do not follow the warping of the wire",
     "wall": "the coils are solid before the calculated block height is reached",
     "working length": "a working length is not reached",
     "working set": "the spring sets further at its working lengths",

@@ -97,7 +97,7 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
         placement,
         case.temperature,
         section.kind,
-        section.degree,
+        case.section_degree,
         Threads(threads),
         element,
     )

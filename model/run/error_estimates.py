@@ -230,7 +230,7 @@ class _Watch:
         outline = outline_of(rule)
         if outline is not None:
             finer = outline.rule(FINER_OUTLINE * len(rule))
-        self.finer = _Followed(companion, FOLLOWED, section.kind, finer, section.degree)
+        self.finer = _Followed(companion, FOLLOWED, section.kind, finer, companion.case.section_degree)
         self.warping: _Followed | None = None
         case, law = companion.case, companion.law
         if outline and keeps_elastic_warping(case, companion.spring) and warping_can_be_estimated(case, law):

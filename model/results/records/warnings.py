@@ -259,7 +259,7 @@ MORE = {
     "mesh": f"more mesh.elements_per_turn reduce it, {ITSELF}",
     "section": f"more points, mesh.section.radial and angular, reduce it, {ITSELF}",
     "contact": f"a greater contact.bedding reduces it, {ITSELF}",
-    "warping": "mesh.section: {kind: warping, degree: 5} reduces it, in rectangles with degree: 7 and radial: 16",
+    "warping": "mesh.section.kind: warping reduces it",
     "steps": f"a smaller accuracy or more steps reduce it, {ITSELF}",
 }
 """What makes an error smaller, by its cause."""

@@ -5,14 +5,18 @@ disks. The rate of a coil of tube is also computed by two sections of round wire
 
 A coil of D/d = 4, 6 and 8, d the greater of width and height, is pressed in 12 steps, far beyond yield, and released.
 The reference is one slice of finite elements in three dimensions, in which nothing is assumed of the section: rate,
-force at full travel, set, and the residual shear at the inside of the coil at 0.9 of the half width. Sections are oval
-4 × 5 mm, rectangle 6 × 3 mm with corners of 0.5 mm, and an egg 5.6 mm wide and 5 mm high. `curved` sections keep the
-elastic warping in plastic flow, with 160 points; `warping` ones find theirs, with polynomials of degree 5 and 160
-points, of the rectangle 9 and 640.
+force at full travel, set, and the residual shear on the surface at the inside of the coil, which is what a run reports.
+The greatest shear on the outline of the elastic coil is compared as well, and its place: the rod's own shear at the
+slice's place is divided by its greatest. Three times as many unknowns change the slice's residual shear of the
+rectangle at D/d = 4 by 0.1 %, all else by less.
 
-Wanted are 0.3 % of force and set and 3 % of the residual shear. Oval and egg meet it with `warping`, the rectangle but
-for its residual shear, where polynomials do not follow the kinks of its plastic warping. Tolerances of the others are
-what is reached: a rectangle's warping changes most as it yields, so that `curved` ones are too stiff then.
+Sections are oval 4 × 5 mm, rectangle 6 × 3 mm with corners of 0.5 mm, and an egg 5.6 mm wide and 5 mm high. `curved`
+sections keep the elastic warping in plastic flow, with 160 points; `warping` ones find theirs, with polynomials of
+degree 5 and 160 points, of the rectangle 7 and 160, and 9 and 640.
+
+Wanted are 0.3 % of force and set and 3 % of the residual shear. `warping` sections meet it, of the rectangle with
+degree 9; with 7 its force is 0.4 % too high. Tolerances of the others are what is reached: the sections of `curved`
+follow the elastic warping, so that they are too stiff beyond yield, most in a rectangle, whose warping changes most.
 """
 
 import time
@@ -29,9 +33,10 @@ from coilset.model.material import library
 from coilset.model.section.outline import Outlined, OutlinedRule
 from coilset.model.section.rules import polar
 from coilset.model.slice.analysis import ACROSS, INSIDE
-from coilset.model.slice.slice import Coil
+from coilset.model.slice.problem import SliceProblem
+from coilset.model.slice.slice import Coil, Slice
+from coilset.model.slice.watch import Watch, shear
 from coilset.verification.one_section.outlined_coil import OutlinedCoil
-from coilset.verification.one_section.slice_runs import press
 from coilset.verification.study import Study
 
 WIRES: dict[str, Outline] = {
@@ -39,14 +44,27 @@ WIRES: dict[str, Outline] = {
     "rectangle 6 × 3": rectangle(6.0, 3.0, 0.5),
     "egg 5.6 × 5": Egg(2.5, 1.5, 1.6),
 }
-WANTED = (3e-3, 3e-3, 3e-3, 3e-2)
-TOLERANCES = {  # of rate, force, set, residual shear
-    "oval 4 × 5": {"curved": (1e-3, 6e-3, 3e-3, 8e-2), "warping": WANTED},
-    "rectangle 6 × 3": {"curved": (5e-3, 3e-2, 3e-3, 3e-1), "warping": (*WANTED[:3], 1e-1)},
-    "egg 5.6 × 5": {"curved": (2e-3, 5e-3, 3e-3, 4e-2), "warping": WANTED},
+WANTED = (3e-3, 3e-3, 3e-3, 3e-2, 2e-2, 2e-2)
+CLOSEST = ("warping", 9, 640)
+Kind = tuple[str, int, int]  # of sections, degree of their polynomials, points
+TOLERANCES: dict[str, dict[Kind, tuple[float, ...]]] = {  # of QUANTITIES
+    "oval 4 × 5": {("curved", 3, 160): (1e-3, 6e-3, 3e-3, 6e-2, 2e-3, 2e-3), ("warping", 5, 160): WANTED},
+    "rectangle 6 × 3": {
+        ("curved", 3, 160): (5e-3, 3e-2, 3e-3, 1.3e-1, *WANTED[4:]),
+        ("warping", 7, 160): (3e-3, 6e-3, *WANTED[2:]),
+        CLOSEST: WANTED,
+    },
+    "egg 5.6 × 5": {("curved", 3, 160): (2e-3, 5e-3, 3e-3, 6e-2, *WANTED[4:]), ("warping", 5, 160): WANTED},
 }
-QUANTITIES = ("rate of a turn, N/mm", "force at full travel, N", "set of a turn, mm", "residual shear at 0.9, MPa")
-PART = 0.9  # of the half width, where the residual stress is compared
+QUANTITIES = (
+    "rate of a turn, N/mm",
+    "force at full travel, N",
+    "set of a turn, mm",
+    "residual shear inside, MPa",
+    "greatest elastic shear, MPa",
+    "shear at its place in the slice, over the greatest",
+)
+AROUND = 240  # places on the outline
 PARTS = np.append(1e-4, np.arange(1, 13) / 12)  # of the travel; the first is elastic
 SHEAR = 1.5e-2  # τ/G of the travel, far beyond yield
 
@@ -58,18 +76,26 @@ def run(study: Study) -> None:
     rows, off = [], {}
     for name, outline in WIRES.items():
         for index in (4.0, 6.0, 8.0):
-            reference = slice_of(outline, index)
-            for kind, limits in TOLERANCES[name].items():
-                points, degree = (640, 9) if kind == "warping" and name.startswith("rectangle") else (160, 5)
+            reference, around = slice_of(outline, index)
+            for of, limits in TOLERANCES[name].items():
                 began = time.process_time()
-                found, seconds = coil(outline, index, points, kind, degree), time.process_time() - began
-                for quantity, ours, theirs, tolerance in zip(QUANTITIES, found, reference, limits, strict=True):
-                    study.check(f"{name}, {kind}, D/d = {index:g}: {quantity}", ours, theirs, "slice", tolerance)
-                off[name, kind, index] = 100.0 * (found / reference - 1.0)
-                rows.append([name, kind, index, *off[name, kind, index], seconds])
-    columns = ["wire", "section", "D/d", "rate", "force", "set", "residual shear", "s"]
+                found, here = coil(outline, index, of)
+                seconds = time.process_time() - began
+                found = np.append(found, [here.max(), here[np.argmax(around)] / here.max()])
+                wanted = np.append(reference, [around.max(), 1.0])
+                for quantity, ours, theirs, tolerance in zip(QUANTITIES, found, wanted, limits, strict=True):
+                    study.check(f"{name}, {words(of)}, D/d = {index:g}: {quantity}", ours, theirs, "slice", tolerance)
+                off[name, of, index] = 100.0 * (found / wanted - 1.0)
+                rows.append([name, words(of), index, *off[name, of, index], seconds])
+    columns = ["wire", "section", "D/d", "rate", "force", "set", "residual shear", "greatest shear", "its place", "s"]
     study.table("Deviation from the slice, %", columns, rows)
     study.figure("any_wire", draw(off))
+
+
+def words(of: Kind) -> str:
+    """A kind of sections in words."""
+    kind, degree, points = of
+    return kind if kind == "curved" else f"{kind} {degree}, {points} points"
 
 
 def rectangle_torsion(width: float, height: float) -> float:
@@ -140,54 +166,77 @@ def size(outline: Outline, index: float) -> tuple[float, float, float]:
     return mean, height + travel / 0.9, travel
 
 
-def coil(outline: Outline, index: float, points: int = 160, kind: str = "curved", degree: int = 3) -> np.ndarray:
-    """`QUANTITIES` by the rod's section."""
+def surface(boundary: Boundary) -> np.ndarray:
+    """Places on a boundary, the first one at the inside of the coil, shape (n, 2)."""
+    return np.concatenate([[[boundary.high[0], 0.0]], boundary.points(AROUND)])
+
+
+def coil(outline: Outline, index: float, of: Kind) -> tuple[np.ndarray, np.ndarray]:
+    """The first four of `QUANTITIES` by the rod's section, and the elastic shear around it, MPa."""
     section, height = unit(outline)
     mean, pitch, travel = size(outline, index)
-    place = np.array([[PART * section.boundary.high[0], 0.0]])  # one more point, which weighs nothing
-    rule = section.rule(points)
-    rule = OutlinedRule(np.concatenate([rule.points, place]), np.append(rule.weights, 0.0), rule.name, section)
+    kind, degree, points = of
+    places, rule = surface(section.boundary), section.rule(points)
+    weights = np.append(rule.weights, np.zeros(len(places)))  # the places are points that weigh nothing
+    rule = OutlinedRule(np.concatenate([rule.points, places]), weights, rule.name, section)
     one = OutlinedCoil(library.load("ck15"), kind, rule, height, mean, pitch, degree)
+    across = [one.sections.components.index(name) for name in ("t12", "t13")]
+
+    def across_wire() -> np.ndarray:
+        return one.start["point_state"][0, 0, -len(places) :, across]
+
     forces = []
     for part in PARTS:
         one.go_to(float(part * travel))
         forces.append(one.force)
+        if part == PARTS[0]:
+            elastic = np.hypot(*across_wire())
     rate, force = forces[0] / (PARTS[0] * travel), forces[-1]
     one.go_to(None)
-    shear = one.start["point_state"][0, 0, -1, one.sections.components.index("t13")]
-    return np.array([rate, force, one.travel, -shear])
+    return np.array([rate, force, one.travel, -across_wire()[1, 0]]), elastic
 
 
-def slice_of(outline: Outline, index: float) -> np.ndarray:
-    """`QUANTITIES` by the slice."""
+def slice_of(outline: Outline, index: float) -> tuple[np.ndarray, np.ndarray]:
+    """As `coil`, by the slice."""
     mean, pitch, travel = size(outline, index)
-    half = 0.5 * float(np.ptp(Boundary.of(outline).polygon[:, 0]))
-    mesh, places = section_mesh(outline, ACROSS, 2, inside=INSIDE), np.array([[-PART * half, 0.0]])
-    found = press(mesh, Coil(0.5 * mean, pitch), travel * PARTS, places)
-    return np.array([found.force[1] / found.travel[1], found.force[-1], found.set_mm, -found.released[0]])
+    section, height = unit(outline)
+    places = 0.5 * height * surface(section.boundary) * [-1.0, 1.0]
+    whole = Coil(0.5 * mean, pitch)
+    body = Slice(section_mesh(outline, ACROSS, 3, inside=INSIDE), whole, library.load("ck15"))
+    watch, problem = Watch(body, places), SliceProblem(body)
+    forces = []
+    for part in PARTS:
+        problem.go_to_rise(whole.rise - part * travel / (2.0 * np.pi))
+        forces.append(problem.force)
+        if part == PARTS[0]:
+            elastic = shear(watch.section_stress())
+    problem.go_to_force(0.0)
+    back = 2.0 * np.pi * (whole.rise - body.rise)
+    residual = watch.section_stress()[0, 4]
+    return np.array([forces[0] / (PARTS[0] * travel), forces[-1], back, -residual]), elastic
 
 
-def draw(off: dict[tuple[str, str, float], np.ndarray]) -> Figure:
+def draw(off: dict[tuple[str, Kind, float], np.ndarray]) -> Figure:
     """Deviation from the slice over D/d."""
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(10.8, 4.0), layout="constrained")
-        lines = [(name, kind) for name in WIRES for kind in ("curved", "warping")]
+        figure = Figure(figsize=(10.8, 4.2), layout="constrained")
         names = ("rate", "force at full travel", "set", "residual shear inside")
         for k, (axes, quantity) in enumerate(zip(figure.subplots(1, 4), names, strict=True)):
-            for (name, kind), colour in zip(lines, ("C0", "C0", "C1", "C1", "C2", "C2"), strict=True):
-                index = [i for wire, of, i in off if (wire, of) == (name, kind)]
-                values = [abs(off[name, kind, i][k]) for i in index]
-                style = "o-" if kind == "warping" else "o--"
-                axes.semilogy(index, values, style, color=colour, ms=4, lw=1.1, label=f"{name}, {kind}")
+            for colour, (name, kinds) in zip(("C0", "C1", "C2"), TOLERANCES.items(), strict=True):
+                for of in kinds:
+                    index = [i for wire, kind, i in off if (wire, kind) == (name, of)]
+                    values = [abs(off[name, of, i][k]) for i in index]
+                    style = "o--" if of[0] == "curved" else "s:" if of[1] == 7 else "o-"
+                    axes.semilogy(index, values, style, color=colour, ms=4, lw=1.1, label=f"{name}, {words(of)}")
             axes.axhspan(1e-4, 100.0 * WANTED[k], color="0.92", lw=0)
             axes.set_ylim(bottom=2e-3)
             axes.set(xlabel="D/d", title=quantity, xticks=index)
             axes.grid(lw=0.3)
             if k == 0:
                 axes.set_ylabel("|deviation from the slice| in %")
-        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=6, fontsize=7)
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=7)
         worst = {
-            kind: np.max([np.abs(values) for (_, of, _), values in off.items() if of == kind], axis=0)
+            kind: np.max([np.abs(values) for (_, of, _), values in off.items() if of[0] == kind], axis=0)
             for kind in ("curved", "warping")
         }
         figure.suptitle(
