@@ -6,8 +6,8 @@ is added. The law is Voce's, half of the rise back stress: too little to flow ba
 hardening must come out as not determined. The intervals hold all constants together with 95 % confidence: of 40 sets 2
 may have one outside, and 4 or more are allowed by chance in one of twenty such series.
 
-The set of a third spring, pressed to 95 %, is predicted by the whole rod with the constants of five more sets: on some of
-the 40 it was decided to take the middle of a share that is not determined, so that these could not fail. The same
+The set of a third spring, pressed to 95 %, is predicted by the whole rod with the constants of five more sets: on some
+of the 40 it was decided to take the middle of a share that is not determined, so that these could not fail. The same
 readings fitted by a law without hardening show what a wrong law looks like.
 """
 
