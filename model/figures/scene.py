@@ -139,7 +139,13 @@ def force_line(run: Run, number: int) -> np.ndarray | None:
 
 
 def caption(run: Run, number: int) -> str:
-    """Name, height and force of a snapshot, the force of a pulled spring with its sign; rounding counts as zero."""
+    """Name, height and force of a snapshot, the force of a pulled spring with its sign; rounding counts as zero. Of a
+    torsion spring rotation and torque."""
+    if run.summary.get("turn_max_deg") is not None:
+        last = np.flatnonzero(run.data["phase"].values == number - 1)
+        values = (run.data[name].values for name in ("turn_deg", "torque_Nmm"))
+        turn, torque = (float(one[last[-1]]) if len(last) else 0.0 for one in values)
+        return f"{run.snapshots[number]}\n{plain(turn)}°, {plain(torque if abs(torque) > 1e-3 else 0.0)} N mm"
     height, force = (float(run.data[name].values[number]) for name in ("height", "force"))
     force = force if abs(force) > 1e-6 * float(np.abs(run.data["force"].values).max()) else 0.0
     return f"{run.snapshots[number]}\n{plain(height, 5)} mm, {plain(force)} N"
