@@ -170,6 +170,20 @@ def test_an_arm_on_a_point_bends_between_it_and_the_coil():
     assert torque < 1e-8 * abs(summary["torque_max_Nmm"])
 
 
+@pytest.mark.mpi
+def test_ranks_turn_a_spring_onto_its_arbor_alike():
+    """All ranks together and each by itself, on the arbor and back: the torques within 1e-9 of the largest."""
+    spring = OPEN | {"turns": 1.5} | both("arms", length=10.0)
+    loading = [{"to": {"force": 0, "top": {"turn": 60}}, "steps": 2}]
+    loading += [{"to": {"force": 0, "top": {"torque": 0}}, "steps": 2}]
+    entries = {"spring": spring, "material": "elastic", "ends": "clamped", "mesh": MESH, "accuracy": "none"}
+    case = check(entries | {"loading": loading, "contact": {"arbor": 24.0}, "heads": {"top": {"sideways": "free"}}})
+    together, alone = (Analysis(case, comm).run().steps for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
+    ours, reference = (np.array([step.torque_Nmm for step in steps]) for steps in (together, alone))
+    assert any(step.contacts for step in alone)
+    np.testing.assert_allclose(ours, reference, rtol=0, atol=1e-9 * np.abs(reference).max())
+
+
 def test_a_coiled_spring_holds_more_when_it_is_wound_further(ck15):
     """Coiling leaves tension at the inside, against the compression of winding further; opened, the spring yields at
     once: it keeps more than twice the set."""

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
+from coilset.model.base.agreement import max_of_ranks
 from coilset.model.base.compat import NOT_A_NUMBER
 from coilset.model.equilibrium.newton.contact_limit import ContactLimit
 from coilset.model.equilibrium.newton.convergence import EquilibriumTest, Reason, imbalance
@@ -226,7 +227,8 @@ class Iteration:
 
     def _judge(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> Any:
         """SNES's convergence test."""
-        norm, X = norms[2], self.system.increments
+        # MPI does not promise the same sum to the bit on all ranks, and these are to go on alike
+        norm, X = max_of_ranks(self.system.comm, norms[2]), self.system.increments
         if iteration == 0:
             self._step_length, self._crawled = None, 0
             self.damping.begin()

@@ -92,7 +92,8 @@ class Guess:
             difference.scale(-size / earlier)
             difference.axpy(1.0, guess)
             difference.scale((size + last) / (earlier + last))
-            if difference.norm() <= self.bend * guess.norm():
+            kink = difference.norm() - self.bend * guess.norm()
+            if max_of_ranks(load.layout.comm, kink) <= 0.0:
                 guess.axpy(1.0, difference)
         return guess
 
@@ -110,4 +111,4 @@ class Guess:
         forces = start.duplicate()
         self.system.residual(start, load, 1.0, forces)
         forces.getArray()[load.held] = 0.0
-        return forces.norm()
+        return max_of_ranks(load.layout.comm, forces.norm())
