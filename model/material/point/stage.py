@@ -30,42 +30,65 @@ tangent −J⁻¹ ∂R/∂ε and, with it, what the next stage starts from.
 
 import math
 from collections import namedtuple
+from typing import Any
 
 import numpy as np
 
 from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.material.creep.flow import creep_strain, crept
+from coilset.model.material.creep.flow import Creep, creep_strain, crept
 from coilset.model.material.law.functions import EXPONENT, functions
-from coilset.model.material.law.parts import Parts, saturation
+from coilset.model.material.law.parts import saturation
 from coilset.model.material.point.overstress import ROOT, of_work
 from coilset.model.runtime.kernels import njit
 
-# A stage's data. h: time of creep; reference: ρ, 0 without overstress; temperature, at b = work; heating: of
-# the temperature by b; expansion: of the rod's axial strain by b; deviates: κ ≠ 0.
-Span = namedtuple("Span", "h reference temperature work heating expansion deviates")
+# A stage's data. law: Parts; h: time of creep; reference: ρ, 0 without overstress; temperature, at b = work; heating:
+# of the temperature by b; expansion: of the rod's axial strain by b; deviates: κ ≠ 0.
+Stage = namedtuple("Stage", "law h reference temperature work heating expansion deviates")
 # The unknowns, with D in the place of b, and which of them there are: those of flow, and that of creep;
 # neutral: κ is one, in the place of λ = 0; frozen: D = 0.
 Unknowns = namedtuple("Unknowns", "gain l q chi")
 Active = namedtuple("Active", "flow creep neutral frozen")
-STILL, FLOWING = Active(False, False, False, False), Active(True, False, False, False)
-NEUTRAL = Active(True, False, True, False)
-# Room for a stage. v: rows over the components, by the names below; of: rows over the back stresses; J, r: Newton's
-# matrix and residuals; ways: slopes of T_trial, n_β and the logarithm of the stage's time by the strains, shape (3,
-# components, strains); kept, kept_of: D_STRESS and D_FLOW, and D_THETA, of each unknown and, behind MOST of them, of
-# each strain.
-MOST = 4
-Room = namedtuple("Room", "v of J r ways kept kept_of")
-OFF, CORRECTION, STEP = MOST, MOST + 1, MOST + 2  # columns of r behind J⁻¹: residuals, J⁻¹ times them, the last step
-METRIC, MODULUS, TRIAL, ONSET, TURNED, SHARE, STRESS, ACTIVE, FLOW, D_STRESS, D_ACTIVE, D_FLOW, VECTORS = range(13)
-THETA, ZETA, FADING, D_ZETA, D_FADING, D_THETA, TERMS = range(7)  # FADING: γ
+STILL, CREEPING = Active(False, False, False, False), Active(False, True, False, False)
+FLOWING, NEUTRAL = Active(True, False, False, False), Active(True, False, True, False)
 # Values at the unknowns: v, k and slopes in b; κ; |n|, n:P, |P|, σ and the creep strain; b, a, q, χ as they are used.
 Values = namedtuple("Values", "v dv k dk kappa dkappa norm work length sigma creep gain b l a q chi")
 # What a direction changes: strain number `strain` (none: −1) and the unknowns; and by how much the residuals change.
 Change = namedtuple("Change", "strain gain l q chi")
 Residual = namedtuple("Residual", "flow work length creep")
-# Rows of a point's numbers, as of their slopes: ē, the Bᵢ from BACK on, the stage's creep strain χ T in the row before
-# the last, and in the last b and u, in the places WORK and CREPT.
-BACK, CREEP, WORK, CREPT = 1, -2, 0, 1
+NO_CREEP = Creep(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+MOST, MOST_TERMS = 4, 8  # unknowns; back stresses
+# Rows of a point's numbers, and of their slopes by the strains: ē; the stage's creep strain χ T; b and u, in the places
+# WORK and CREPT; the Bᵢ from BACK on.
+ELASTIC, CREEP, SCALARS, BACK = range(4)
+WORK, CREPT = 0, 1
+ROWS = BACK + MOST_TERMS
+OFF, CORRECTION, STEP = MOST, MOST + 1, MOST + 2  # columns of r behind J⁻¹: residuals, J⁻¹ times them, the last step
+COMPONENT, TERM = (np.float64, (6,)), (np.float64, (MOST_TERMS,))
+BY_STRAIN = (np.float64, (6, 6))  # component, strain
+# All that is written on the way, in one piece of memory, which functions get by its address.
+ROOM = np.dtype(
+    [("components", np.int64), ("terms", np.int64)]
+    # weights of the inner product and moduli of T; strain of the increment, slopes of its part before the yield surface
+    # by the strains, and of its strain over c
+    + [(name, *COMPONENT) for name in ("metric", "modulus", "strain", "before")]
+    + [("unit", *BY_STRAIN)]
+    # T_trial and n_β, their slopes, and those of the logarithm of the stage's time
+    + [("trial", *COMPONENT), ("onset", *COMPONENT), ("d_trial", *BY_STRAIN), ("d_onset", *BY_STRAIN)]
+    + [("d_time", *COMPONENT)]
+    # at the unknowns: n − n_β, s, T, n, P, and their changes
+    + [(name, *COMPONENT) for name in ("turned", "share", "stress", "active", "flow", "d_stress", "d_active", "d_flow")]
+    # θᵢ, ζᵢ, γᵢ, their slopes in b and the change of θᵢ
+    + [(name, *TERM) for name in ("theta", "zeta", "fading", "d_zeta", "d_fading", "d_theta")]
+    # Newton's matrix and residuals; d_stress, d_flow and d_theta of each unknown and, behind MOST, of each strain
+    + [("J", np.float64, (MOST, MOST)), ("r", np.float64, (MOST, MOST + 3))]
+    + [(f"kept_{name}", np.float64, (MOST + 6, 6)) for name in ("stress", "flow")]
+    + [("kept_theta", np.float64, (MOST + 6, MOST_TERMS))]
+    # the point where a stage starts, then where it ends; where a piece and a part of the increment start
+    + [(f"rows{at}", np.float64, (ROWS, 6)) for at in ("", "_of_piece", "_of_part")]
+    + [(f"slopes{at}", np.float64, (ROWS, 6, 6)) for at in ("", "_of_piece", "_of_part")]
+)
+Room = Any  # a record of ROOM
 
 MAX_ITERATIONS = 60
 PRECISION, LAST = 1e-13, 1e-8  # of |n| over k; of the relative correction after which no other follows
@@ -76,193 +99,168 @@ SLIGHT = 1e-8  # of n:P over |n| |P|, and of κ, that is none
 
 
 @njit(**INLINE)
-def inner(v: np.ndarray, a: int, b: int) -> float:
-    """a:b of two deviators in rows of `Room.v`."""
+def inner(w: Room, a: np.ndarray, b: np.ndarray) -> float:
+    """a:b of two deviators."""
     total = 0.0
-    for j in range(v.shape[1]):
-        total += v[METRIC, j] * v[a, j] * v[b, j]
+    for j in range(w.components):
+        total += w.metric[j] * a[j] * b[j]
     return total
 
 
 @njit(**KERNEL)
-def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Active, room: Room) -> Values:
+def evaluate(of: Stage, at: Unknowns, active: Active, w: Room) -> Values:
     """T, n and P at the unknowns, and what the residuals consist of."""
-    p, size = law.plastic, room.of.shape[1]
-    gain, chi = at.gain, at.chi
-    b = start[-1, WORK] + gain
-    temperature = span.temperature + span.heating * (b - span.work)
-    k2, dk2, zeta, d_zeta, kappa, dkappa = functions(p, b, temperature)
+    law, gain, chi = of.law, at.gain, at.chi
+    b = w.rows[SCALARS, WORK] + gain
+    temperature = of.temperature + of.heating * (b - of.work)
+    k2, dk2, zeta, d_zeta, kappa, dkappa = functions(law.plastic, b, temperature)
     k = math.sqrt(k2)
     dk = 0.5 * dk2 / k
-    if not span.deviates:
+    if not of.deviates:
         kappa = dkappa = 0.0
     if active.neutral:
         kappa, dkappa = at.l, 0.0
     v, dv, l, q = 1.0, 0.0, at.l, at.q
     a = l if active.neutral else l + kappa
-    if active.flow and not span.deviates:
-        if span.reference > 0.0:
-            v, dv = of_work(span.reference, p[EXPONENT], gain, k)
+    if active.flow and not of.deviates:
+        if of.reference > 0.0:
+            v, dv = of_work(of.reference, law.plastic[EXPONENT], gain, k)
         l, q = gain / (v * v * k2), ROOT * gain / (v * k)
         a = l
     if not active.flow:
         a = l = q = kappa = dkappa = 0.0
     total = 0.0
-    for i in range(size):
+    for i in range(w.terms):
         if law.terms.shape[1] > 0:
-            zeta, room.of[FADING, i], d_zeta, room.of[D_FADING, i] = saturation(law, i, temperature)
-        room.of[ZETA, i], room.of[D_ZETA, i] = zeta, d_zeta
-        room.of[THETA, i] = 1.0 / (1.0 + room.of[FADING, i] * q)
-        total += room.of[THETA, i] * zeta
-    for j in range(room.v.shape[1]):
-        c = room.v[MODULUS, j]
-        s = room.v[SHARE, j] = 1.0 / (1.0 + c * chi)
-        elastic = room.v[TRIAL, j]
+            zeta, w.fading[i], d_zeta, w.d_fading[i] = saturation(law, i, temperature)
+        w.zeta[i], w.d_zeta[i] = zeta, d_zeta
+        w.theta[i] = 1.0 / (1.0 + w.fading[i] * q)
+        total += w.theta[i] * zeta
+    for j in range(w.components):
+        c = w.modulus[j]
+        s = w.share[j] = 1.0 / (1.0 + c * chi)
+        elastic = w.trial[j]
         if j == 0:
-            elastic -= c * span.expansion * gain
+            elastic -= c * of.expansion * gain
         n, H = s * elastic, s * c + total
-        for i in range(size):
-            n -= room.of[THETA, i] * start[BACK + i, j]
-        turned = (n - (1.0 + H * (a - kappa)) * room.v[ONSET, j]) / (1.0 + H * a)  # n − n_β, without its rounding
-        n = (n + H * kappa * room.v[ONSET, j]) / (1.0 + H * a)
+        for i in range(w.terms):
+            n -= w.theta[i] * w.rows[BACK + i, j]
+        turned = (n - (1.0 + H * (a - kappa)) * w.onset[j]) / (1.0 + H * a)  # n − n_β, without its rounding
+        n = (n + H * kappa * w.onset[j]) / (1.0 + H * a)
         P = (a - kappa) * n + kappa * turned
-        room.v[TURNED, j], room.v[ACTIVE, j], room.v[FLOW, j] = turned, n, P
-        room.v[STRESS, j] = s * (elastic - c * P)
-    norm, length = math.sqrt(inner(room.v, ACTIVE, ACTIVE)), math.sqrt(inner(room.v, FLOW, FLOW))
-    sigma = math.sqrt(1.5 * inner(room.v, STRESS, STRESS))
-    creep = creep_strain(law.viscous, sigma, start[-1, CREPT], span.h)
-    work = inner(room.v, ACTIVE, FLOW)
+        w.turned[j], w.active[j], w.flow[j] = turned, n, P
+        w.stress[j] = s * (elastic - c * P)
+    norm, length = math.sqrt(inner(w, w.active, w.active)), math.sqrt(inner(w, w.flow, w.flow))
+    sigma, creep = 0.0, NO_CREEP
+    if active.creep:
+        sigma = math.sqrt(1.5 * inner(w, w.stress, w.stress))
+        creep = creep_strain(law.viscous, sigma, w.rows[SCALARS, CREPT], of.h)
+    work = inner(w, w.active, w.flow)
     return Values(v, dv, k, dk, kappa, dkappa, norm, work, length, sigma, creep, gain, b, l, a, q, chi)
 
 
 @njit(**KERNEL)
-def differential(
-    law: Parts,
-    span: Span,
-    start: np.ndarray,
-    slopes: np.ndarray,
-    values: Values,
-    active: Active,
-    change: Change,
-    room: Room,
-) -> Residual:
-    """How n, P, T, θᵢ and the residuals change in a direction; see `Change`.
-
-    Args:
-        law, span, start, values, room: as in `evaluate`.
-        slopes: of the start by the strains, shape (rows, components, strains).
-        active: Active.
-        change: the direction.
-    """
-    x, size, k = values, room.of.shape[1], values.k
-    way, db0, du0, d_time = change.strain, 0.0, 0.0, 0.0
+def differential(of: Stage, x: Values, active: Active, change: Change, w: Room) -> Residual:
+    """How n, P, T, θᵢ and the residuals change in a direction from x; see `Change`."""
+    k, way, db0, du0, d_time = x.k, change.strain, 0.0, 0.0, 0.0
     if way >= 0:
-        db0, du0, d_time = slopes[-1, WORK, way], slopes[-1, CREPT, way], room.ways[2, 0, way]
+        db0, du0, d_time = w.slopes[SCALARS, WORK, way], w.slopes[SCALARS, CREPT, way], w.d_time[way]
     gain, d_gain, db = x.gain, change.gain, db0 + change.gain
     dk, dq, dv = x.dk * db, change.q, 0.0
     dkappa = change.l if active.neutral else x.dkappa * db
     da = change.l if active.neutral else change.l + dkappa
-    if active.flow and not span.deviates:
+    if active.flow and not of.deviates:
         dw = d_gain / gain
-        if span.reference > 0.0:
+        if of.reference > 0.0:
             dv = x.v * x.dv * (dw - dk / k - d_time)
         dq = x.q * (dw - dv / x.v - dk / k)
         da = x.a * (dw - 2.0 * dv / x.v - 2.0 * dk / k)
     if not active.flow:
         d_gain = 0.0
-    d_total = 0.0
-    for i in range(size):
-        theta = room.of[THETA, i]
-        room.of[D_THETA, i] = -theta * theta * (room.of[FADING, i] * dq + x.q * room.of[D_FADING, i] * db)
-        d_total += room.of[D_THETA, i] * room.of[ZETA, i] + theta * room.of[D_ZETA, i] * db
-    total = 0.0
-    for i in range(size):
-        total += room.of[THETA, i] * room.of[ZETA, i]
+    total = d_total = 0.0
+    for i in range(w.terms):
+        theta, zeta = w.theta[i], w.zeta[i]
+        w.d_theta[i] = -theta * theta * (w.fading[i] * dq + x.q * w.d_fading[i] * db)
+        total += theta * zeta
+        d_total += w.d_theta[i] * zeta + theta * w.d_zeta[i] * db
     nn = pp = np_ = tt = 0.0
-    for j in range(room.v.shape[1]):
-        c, s = room.v[MODULUS, j], room.v[SHARE, j]
-        ds, elastic, d_elastic = -c * s * s * change.chi, room.v[TRIAL, j], 0.0
-        d_onset = 0.0
+    for j in range(w.components):
+        c, s = w.modulus[j], w.share[j]
+        ds, elastic, d_elastic, d_onset = -c * s * s * change.chi, w.trial[j], 0.0, 0.0
         if way >= 0:
-            d_elastic, d_onset = room.ways[0, j, way], room.ways[1, j, way]
+            d_elastic, d_onset = w.d_trial[j, way], w.d_onset[j, way]
         if j == 0:
-            elastic -= c * span.expansion * gain
-            d_elastic -= c * span.expansion * d_gain
+            elastic -= c * of.expansion * gain
+            d_elastic -= c * of.expansion * d_gain
         dn, H, dH = s * d_elastic + ds * elastic, s * c + total, c * ds + d_total
-        for i in range(size):
-            dn -= room.of[D_THETA, i] * start[BACK + i, j]
+        for i in range(w.terms):
+            dn -= w.d_theta[i] * w.rows[BACK + i, j]
             if way >= 0:
-                dn -= room.of[THETA, i] * slopes[BACK + i, j, way]
-        n, P, turned = room.v[ACTIVE, j], room.v[FLOW, j], room.v[TURNED, j]
+                dn -= w.theta[i] * w.slopes[BACK + i, j, way]
+        n, P, turned = w.active[j], w.flow[j], w.turned[j]
         rest = n * (da - dkappa) + turned * dkappa - x.kappa * d_onset
         dn = (dn - P * dH - H * rest) / (1.0 + H * x.a)
         dP = rest + x.a * dn
         dT = s * (d_elastic - c * dP) + ds * (elastic - c * P)
-        room.v[D_ACTIVE, j], room.v[D_FLOW, j], room.v[D_STRESS, j] = dn, dP, dT
-        w = room.v[METRIC, j]
-        nn += w * n * dn
-        np_ += w * (n * dP + P * dn)
-        pp += w * P * dP
-        tt += w * room.v[STRESS, j] * dT
-    of = x.creep
-    d_sigma = 1.5 * tt / x.sigma if x.sigma > 0.0 else 0.0
-    d_creep = of.by_stress * d_sigma + of.by_start * du0 + of.by_time * d_time
-    return Residual(
-        nn / x.norm - dv * k - x.v * dk,
-        d_gain - np_,
-        dq - 2.0 / 3.0 * pp / x.q if x.q > 0.0 else dq,
-        change.chi / x.chi + d_sigma / x.sigma - d_creep / of.strain if active.creep else 0.0,
-    )
+        w.d_active[j], w.d_flow[j], w.d_stress[j] = dn, dP, dT
+        m = w.metric[j]
+        nn += m * n * dn
+        np_ += m * (n * dP + P * dn)
+        pp += m * P * dP
+        tt += m * w.stress[j] * dT
+    creep = 0.0
+    if active.creep:
+        d_sigma = 1.5 * tt / x.sigma
+        grown = x.creep.by_stress * d_sigma + x.creep.by_start * du0 + x.creep.by_time * d_time
+        creep = change.chi / x.chi + d_sigma / x.sigma - grown / x.creep.strain
+    length = dq - 2.0 / 3.0 * pp / x.q if x.q > 0.0 else dq
+    return Residual(nn / x.norm - dv * k - x.v * dk, d_gain - np_, length, creep)
 
 
 @njit(**INLINE)
 def residual(x: Values) -> Residual:
     """The equations, each as it is differentiated in `differential`."""
-    of = x.creep
-    creep = math.log(x.chi * x.sigma / (1.5 * of.strain)) if x.chi > 0.0 and of.strain > 0.0 else 0.0
+    creep = math.log(x.chi * x.sigma / (1.5 * x.creep.strain)) if x.chi > 0.0 and x.creep.strain > 0.0 else 0.0
     return Residual(x.norm - x.v * x.k, x.gain - x.work, x.q - ROOT * x.length, creep)
 
 
 @njit(**INLINE)
-def creep_alone(law: Parts, span: Span, start: np.ndarray, room: Room) -> tuple[float, int]:
+def creep_alone(of: Stage, w: Room) -> tuple[float, int]:
     """χ of a stage that does not flow, and iterations, −1 if there is none."""
-    v = room.v
-    first, other = 1.5 * v[METRIC, 0] * v[TRIAL, 0] * v[TRIAL, 0], 0.0
-    for j in range(1, v.shape[1]):
-        other += 1.5 * v[METRIC, j] * v[TRIAL, j] * v[TRIAL, j]
-    return crept(law.viscous, (first, other), (v[MODULUS, 0], v[MODULUS, 1]), start[-1, CREPT], span.h)
+    first, other = 1.5 * w.metric[0] * w.trial[0] * w.trial[0], 0.0
+    for j in range(1, w.components):
+        other += 1.5 * w.metric[j] * w.trial[j] * w.trial[j]
+    return crept(of.law.viscous, (first, other), (w.modulus[0], w.modulus[1]), w.rows[SCALARS, CREPT], of.h)
 
 
 @njit(**INLINE)
-def _normal(span: Span, reference: float) -> Span:
+def _normal(of: Stage, reference: float) -> Stage:
     """Without deviation from normality, and with another overstress."""
-    return Span(span.h, reference, span.temperature, span.work, span.heating, span.expansion, False)
+    return Stage(of.law, of.h, reference, of.temperature, of.work, of.heating, of.expansion, False)
 
 
 @njit(**KERNEL)
-def flow_alone(
-    law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, chi: float, room: Room
-) -> tuple[float, int]:
+def flow_alone(of: Stage, chi: float, w: Room) -> tuple[float, int]:
     """D of a stage that flows without deviation from normality, at a given χ; iterations, −1 if there is none.
 
     |n| − v k falls with D. Newton's method is kept in a bracket. With overstress it starts anew from the static law's D
     and goes over r, D = D_static r^m, since v − 1 is nearly linear in r.
     """
-    m = law.plastic[EXPONENT]
-    reference, span = span.reference, _normal(span, 0.0)
+    m = of.law.plastic[EXPONENT]
+    reference, of = of.reference, _normal(of, 0.0)
     static, r, low, high, count, beyond, to = 0.0, 0.0, 0.0, math.inf, 0, 0.0, 0.0
     for _ in range(2 * MAX_ITERATIONS):
         gain = r if static == 0.0 else static * r**m
-        at = evaluate(law, span, start, Unknowns(gain, 0.0, 0.0, chi), FLOWING if gain > 0.0 else STILL, room)
+        at = evaluate(of, Unknowns(gain, 0.0, 0.0, chi), FLOWING if gain > 0.0 else STILL, w)
         off = at.norm - at.v * at.k
         found = gain > 0.0 and abs(off) <= PRECISION * at.v * at.k
         if gain == 0.0:
-            stiffness = room.v[SHARE, 1] * room.v[MODULUS, 1] + at.k * at.dk
-            for i in range(room.of.shape[1]):
-                stiffness += room.of[ZETA, i]
+            stiffness = w.share[1] * w.modulus[1] + at.k * at.dk
+            for i in range(w.terms):
+                stiffness += w.zeta[i]
             beyond, to = at.norm / at.k - 1.0, off * at.k / stiffness
         elif not found:
-            slope = differential(law, span, start, slopes, at, FLOWING, Change(-1, 1.0, 0.0, 0.0, 0.0), room).flow
+            slope = differential(of, at, FLOWING, Change(-1, 1.0, 0.0, 0.0, 0.0), w).flow
             slope *= 1.0 if static == 0.0 else m * gain / r
             low, high = (r, high) if off > 0.0 else (low, r)
             to = r - off / slope if slope < 0.0 else math.inf
@@ -272,7 +270,7 @@ def flow_alone(
             if reference == 0.0 or static > 0.0:
                 return gain, count
             # r = 1 is the static law; v − 1 there, and over that of the elastic response, were v linear in r
-            static, span, low, high = gain, _normal(span, reference), 0.0, 1.0
+            static, of, low, high = gain, _normal(of, reference), 0.0, 1.0
             to = beyond / (beyond + of_work(reference, m, gain, at.k)[0] - 1.0)
         r, count = to, count + 1
     return 0.0, -1
@@ -297,18 +295,18 @@ def _direction(x: Values, active: Active, deviates: bool, number: int) -> Change
 
 
 @njit(**INLINE)
-def _write(x: Values, of: Residual, active: Active, deviates: bool, into: np.ndarray, column: int) -> None:
+def _write(x: Values, r: Residual, active: Active, deviates: bool, into: np.ndarray, column: int) -> None:
     """The residuals that there are, in the order of the unknowns and without units."""
     i = 0
     if active.flow:
-        into[0, column], i = of.flow / x.k, 1
+        into[0, column], i = r.flow / x.k, 1
         if not active.frozen and deviates:
-            into[1, column], i = of.work / x.gain, 2
+            into[1, column], i = r.work / x.gain, 2
         if deviates:
-            into[i, column] = of.length / x.q
+            into[i, column] = r.length / x.q
             i += 1
     if active.creep:
-        into[i, column] = of.creep
+        into[i, column] = r.creep
 
 
 @njit(**INLINE)
@@ -348,28 +346,20 @@ def _error(x: Values, r: np.ndarray, active: Active, deviates: bool, modulus: fl
 
 
 @njit(**INLINE)
-def _keep(room: Room, i: int) -> None:
-    for j in range(room.v.shape[1]):
-        room.kept[i, 0, j], room.kept[i, 1, j] = room.v[D_STRESS, j], room.v[D_FLOW, j]
-    for j in range(room.of.shape[1]):
-        room.kept_of[i, j] = room.of[D_THETA, j]
+def _keep(w: Room, i: int) -> None:
+    for j in range(w.components):
+        w.kept_stress[i, j], w.kept_flow[i, j] = w.d_stress[j], w.d_flow[j]
+    for j in range(w.terms):
+        w.kept_theta[i, j] = w.d_theta[j]
 
 
 @njit(**KERNEL)
-def _matrix(
-    law: Parts,
-    span: Span,
-    start: np.ndarray,
-    slopes: np.ndarray,
-    x: Values,
-    active: Active,
-    room: Room,
-) -> None:
+def _matrix(of: Stage, x: Values, active: Active, w: Room) -> None:
     """Write J, the residuals' derivatives in the unknowns."""
-    for i in range(_unknowns(active, span.deviates)):
-        of = differential(law, span, start, slopes, x, active, _direction(x, active, span.deviates, i), room)
-        _write(x, of, active, span.deviates, room.J, i)
-        _keep(room, i)
+    for i in range(_unknowns(active, of.deviates)):
+        change = differential(of, x, active, _direction(x, active, of.deviates, i), w)
+        _write(x, change, active, of.deviates, w.J, i)
+        _keep(w, i)
 
 
 @njit(**KERNEL)
@@ -399,60 +389,52 @@ def _eliminate(J: np.ndarray, r: np.ndarray, n: int, columns: int) -> None:
 
 
 @njit(**INLINE)
-def _invert(room: Room, n: int) -> None:
+def _invert(w: Room, n: int) -> None:
     """Write J⁻¹ to the first columns of `Room.r`."""
     for i in range(n):
         for j in range(n):
-            room.r[i, j] = 1.0 if i == j else 0.0
-    _eliminate(room.J, room.r, n, n)
+            w.r[i, j] = 1.0 if i == j else 0.0
+    _eliminate(w.J, w.r, n, n)
 
 
 @njit(**INLINE)
-def _correct(room: Room, n: int) -> float:
+def _correct(w: Room, n: int) -> float:
     """Write J⁻¹ times the residuals; its square."""
     size = 0.0
     for i in range(n):
-        room.r[i, CORRECTION] = 0.0
+        w.r[i, CORRECTION] = 0.0
         for j in range(n):
-            room.r[i, CORRECTION] += room.r[i, j] * room.r[j, OFF]
-        size += room.r[i, CORRECTION] * room.r[i, CORRECTION]
+            w.r[i, CORRECTION] += w.r[i, j] * w.r[j, OFF]
+        size += w.r[i, CORRECTION] * w.r[i, CORRECTION]
     return size
 
 
 @njit(**KERNEL)
-def _together(
-    law: Parts,
-    span: Span,
-    start: np.ndarray,
-    slopes: np.ndarray,
-    at: Unknowns,
-    active: Active,
-    room: Room,
-) -> tuple[Values, int]:
+def _together(of: Stage, at: Unknowns, active: Active, w: Room) -> tuple[Values, int]:
     """Newton's method for all unknowns of a stage that flows; iterations, −1 if it fails.
 
     A correction is halved until one by the same matrix after it is smaller, which no scaling of the equations changes
     (P. Deuflhard, Newton Methods for Nonlinear Problems, 2004, 3.3).
     """
-    n = _unknowns(active, span.deviates)
-    x = evaluate(law, span, start, at, active, room)
-    _write(x, residual(x), active, span.deviates, room.r, OFF)
+    n = _unknowns(active, of.deviates)
+    x = evaluate(of, at, active, w)
+    _write(x, residual(x), active, of.deviates, w.r, OFF)
     for iteration in range(1, MAX_ITERATIONS):
-        _matrix(law, span, start, slopes, x, active, room)
-        _invert(room, n)
-        size = _correct(room, n)
-        largest = _error(x, room.r, active, span.deviates, room.v[MODULUS, 0])
+        _matrix(of, x, active, w)
+        _invert(w, n)
+        size = _correct(w, n)
+        largest = _error(x, w.r, active, of.deviates, w.modulus[0])
         if not math.isfinite(largest):
             return x, -1
         part = 1.0
         for i in range(n):
-            room.r[i, STEP] = room.r[i, CORRECTION]
+            w.r[i, STEP] = w.r[i, CORRECTION]
         while True:
-            new = evaluate(law, span, start, _moved(x, room.r, part, active, span.deviates), active, room)
+            new = evaluate(of, _moved(x, w.r, part, active, of.deviates), active, w)
             if largest <= LAST:
                 return new, iteration
-            _write(new, residual(new), active, span.deviates, room.r, OFF)
-            if _correct(room, n) < size:
+            _write(new, residual(new), active, of.deviates, w.r, OFF)
+            if _correct(w, n) < size:
                 break
             part *= 0.5
             if part < SHORTEST:
@@ -462,18 +444,18 @@ def _together(
 
 
 @njit(**KERNEL)
-def _neutral_alone(law: Parts, span: Span, start: np.ndarray, chi: float, room: Room) -> Unknowns:
+def _neutral_alone(of: Stage, chi: float, w: Room) -> Unknowns:
     """κ of neutral loading, with its D ≥ 0 and q, at a given χ, near enough for Newton's method.
 
     |n| > k at κ = 0, which is elastic, and |n| < k at the material's κ: false position with halved weights (Illinois).
     """
-    low, high = 0.0, functions(law.plastic, start[-1, WORK], span.temperature)[4]
+    low, high = 0.0, functions(of.law.plastic, w.rows[SCALARS, WORK], of.temperature)[4]
     above, below, kappa = math.nan, math.nan, 0.5 * high
     at = Unknowns(0.0, kappa, 0.0, chi)
     for _ in range(MAX_ITERATIONS):
-        x = evaluate(law, span, start, Unknowns(at.gain, kappa, at.q, chi), NEUTRAL, room)
+        x = evaluate(of, Unknowns(at.gain, kappa, at.q, chi), NEUTRAL, w)
         at = Unknowns(max(x.work, 0.0), kappa, ROOT * x.length, chi)
-        x = evaluate(law, span, start, at, NEUTRAL, room)
+        x = evaluate(of, at, NEUTRAL, w)
         off = x.norm - x.k
         if abs(off) <= CLOSE * x.k or high - low <= CLOSE * high:
             return at
@@ -488,33 +470,25 @@ def _neutral_alone(law: Parts, span: Span, start: np.ndarray, chi: float, room: 
 
 
 @njit(**KERNEL)
-def _deviating(
-    law: Parts,
-    span: Span,
-    start: np.ndarray,
-    slopes: np.ndarray,
-    at: Unknowns,
-    active: Active,
-    room: Room,
-) -> tuple[Values, Active, int]:
+def _deviating(of: Stage, at: Unknowns, active: Active, w: Room) -> tuple[Values, Active, int]:
     """The end of a stage that flows with κ ≠ 0, from the unknowns of one that flows without.
 
     The kind of flow is that of λ = 0, or else, at the border of two kinds, another one.
     """
-    x = evaluate(law, span, start, Unknowns(0.0, 0.0, 0.0, at.chi), FLOWING, room)
-    x = evaluate(law, span, start, Unknowns(max(x.work, 0.0), 0.0, ROOT * x.length, at.chi), FLOWING, room)
+    x = evaluate(of, Unknowns(0.0, 0.0, 0.0, at.chi), FLOWING, w)
+    x = evaluate(of, Unknowns(max(x.work, 0.0), 0.0, ROOT * x.length, at.chi), FLOWING, w)
     neutral, total = x.norm < x.k, 0
     for _ in range(2):
         first, frozen = at, False
         if neutral:
-            first = _neutral_alone(law, span, start, at.chi, room)
+            first = _neutral_alone(of, at.chi, w)
             frozen = first.gain == 0.0
         for _ in range(2):
             active = Active(True, active.creep, neutral, frozen)
             gain = 0.0 if frozen else max(first.gain, LEAST * x.k * first.q)
-            x, count = _together(law, span, start, slopes, Unknowns(gain, first.l, first.q, at.chi), active, room)
+            x, count = _together(of, Unknowns(gain, first.l, first.q, at.chi), active, w)
             total += max(count, 0)
-            kappa = functions(law.plastic, x.b, span.temperature)[4]
+            kappa = functions(of.law.plastic, x.b, of.temperature)[4]
             falls = not frozen or x.work <= SLIGHT * x.k * x.length
             if count >= 0 and falls and (not neutral or x.l <= kappa * (1.0 + SLIGHT)):
                 return x, active, total
@@ -524,25 +498,25 @@ def _deviating(
 
 
 @njit(**INLINE)
-def solve(law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: Room) -> tuple[Values, Active, int]:
+def solve(of: Stage, w: Room) -> tuple[Values, Active, int]:
     """The end of a stage, and iterations, −1 if there is none."""
     chi, count = 0.0, 0
-    if span.h > 0.0:
-        chi, count = creep_alone(law, span, start, room)
-    x = evaluate(law, span, start, Unknowns(0.0, 0.0, 0.0, chi), STILL, room)
+    if of.h > 0.0:
+        chi, count = creep_alone(of, w)
+    x = evaluate(of, Unknowns(0.0, 0.0, 0.0, chi), CREEPING if chi > 0.0 else STILL, w)
     if count < 0 or x.norm <= x.k * (1.0 + 1e-12):
-        return x, Active(False, chi > 0.0, False, False), count
+        return x, CREEPING if chi > 0.0 else STILL, count
     active = Active(True, chi > 0.0, False, False)
-    gain, more = flow_alone(law, span, start, slopes, chi, room)
+    gain, more = flow_alone(of, chi, w)
     if more < 0:
         return x, active, -1
-    x = evaluate(law, _normal(span, span.reference), start, Unknowns(gain, 0.0, 0.0, chi), FLOWING, room)
-    if active.creep or span.deviates:
+    x = evaluate(_normal(of, of.reference), Unknowns(gain, 0.0, 0.0, chi), FLOWING, w)
+    if active.creep or of.deviates:
         at = Unknowns(x.gain, x.l, x.q, x.chi)
-        if span.deviates:
-            x, active, last = _deviating(law, span, start, slopes, at, active, room)
+        if of.deviates:
+            x, active, last = _deviating(of, at, active, w)
         else:
-            x, last = _together(law, span, start, slopes, at, active, room)
+            x, last = _together(of, at, active, w)
         if last < 0:
             return x, active, -1
         more += last
@@ -550,53 +524,44 @@ def solve(law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: R
 
 
 @njit(**INLINE)
-def finish(
-    law: Parts,
-    span: Span,
-    start: np.ndarray,
-    slopes: np.ndarray,
-    x: Values,
-    active: Active,
-    room: Room,
-) -> None:
+def finish(of: Stage, x: Values, active: Active, w: Room) -> None:
     """Replace the start of a stage and its slopes by those of its end."""
-    n, size, count = room.v.shape[1], room.of.shape[1], _unknowns(active, span.deviates)
-    _matrix(law, span, start, slopes, x, active, room)
+    n, count = w.components, _unknowns(active, of.deviates)
+    rows, slopes = w.rows, w.slopes
+    _matrix(of, x, active, w)
     for k in range(n):
-        of = differential(law, span, start, slopes, x, active, Change(k, 0.0, 0.0, 0.0, 0.0), room)
-        _write(x, of, active, span.deviates, room.r, k)
-        _keep(room, MOST + k)
-    _eliminate(room.J, room.r, count, n)
-    v, of_terms = room.v, room.of
+        change = differential(of, x, active, Change(k, 0.0, 0.0, 0.0, 0.0), w)
+        _write(x, change, active, of.deviates, w.r, k)
+        _keep(w, MOST + k)
+    _eliminate(w.J, w.r, count, n)
     for k in range(n):
+        stress, flow, theta = w.kept_stress[MOST + k], w.kept_flow[MOST + k], w.kept_theta[MOST + k]
         for i in range(count):
-            change = -room.r[i, k]
+            by = -w.r[i, k]
             for j in range(n):
-                room.kept[MOST + k, 0, j] += change * room.kept[i, 0, j]
-                room.kept[MOST + k, 1, j] += change * room.kept[i, 1, j]
-            for j in range(size):
-                room.kept_of[MOST + k, j] += change * room.kept_of[i, j]
-        d_work = slopes[-1, WORK, k] - (x.gain * room.r[0, k] if active.flow and not active.frozen else 0.0)
-        d_chi = -x.chi * room.r[count - 1, k] if active.creep else 0.0
+                stress[j] += by * w.kept_stress[i, j]
+                flow[j] += by * w.kept_flow[i, j]
+            for j in range(w.terms):
+                theta[j] += by * w.kept_theta[i, j]
+        d_work = slopes[SCALARS, WORK, k] - (x.gain * w.r[0, k] if active.flow and not active.frozen else 0.0)
+        d_chi = -x.chi * w.r[count - 1, k] if active.creep else 0.0
         d_sigma = 0.0
         for j in range(n):
-            d_stress, d_flow = room.kept[MOST + k, 0, j], room.kept[MOST + k, 1, j]
-            slopes[0, j, k] = d_stress / v[MODULUS, j]
-            slopes[CREEP, j, k] = d_chi * v[STRESS, j] + x.chi * d_stress
-            d_sigma += v[METRIC, j] * v[STRESS, j] * d_stress
-            for i in range(size):
-                zeta, P = of_terms[ZETA, i], v[FLOW, j]
-                grown = slopes[BACK + i, j, k] + of_terms[D_ZETA, i] * d_work * P + zeta * d_flow
-                before = start[BACK + i, j] + zeta * P
-                slopes[BACK + i, j, k] = of_terms[THETA, i] * grown + room.kept_of[MOST + k, i] * before
-        slopes[-1, WORK, k] = d_work
+            slopes[ELASTIC, j, k] = stress[j] / w.modulus[j]
+            slopes[CREEP, j, k] = d_chi * w.stress[j] + x.chi * stress[j]
+            d_sigma += w.metric[j] * w.stress[j] * stress[j]
+            for i in range(w.terms):
+                P = w.flow[j]
+                grown = slopes[BACK + i, j, k] + w.d_zeta[i] * d_work * P + w.zeta[i] * flow[j]
+                slopes[BACK + i, j, k] = w.theta[i] * grown + theta[i] * (rows[BACK + i, j] + w.zeta[i] * P)
+        slopes[SCALARS, WORK, k] = d_work
         if active.creep:
             d_sigma *= 1.5 / x.sigma
-            slopes[-1, CREPT, k] += x.creep.u_by_stress * d_sigma + x.creep.u_by_time * room.ways[2, 0, k]
+            slopes[SCALARS, CREPT, k] += x.creep.u_by_stress * d_sigma + x.creep.u_by_time * w.d_time[k]
     for j in range(n):
-        start[0, j], start[CREEP, j] = room.v[STRESS, j] / room.v[MODULUS, j], x.chi * room.v[STRESS, j]
-        for i in range(size):
-            start[BACK + i, j] = room.of[THETA, i] * (start[BACK + i, j] + room.of[ZETA, i] * room.v[FLOW, j])
-    start[-1, WORK] = x.b
+        rows[ELASTIC, j], rows[CREEP, j] = w.stress[j] / w.modulus[j], x.chi * w.stress[j]
+        for i in range(w.terms):
+            rows[BACK + i, j] = w.theta[i] * (rows[BACK + i, j] + w.zeta[i] * w.flow[j])
+    rows[SCALARS, WORK] = x.b
     if active.creep:
-        start[-1, CREPT] = x.creep.u
+        rows[SCALARS, CREPT] = x.creep.u
