@@ -71,7 +71,7 @@ def reference_of(reference):
     return make
 
 
-def follow(law, path, integrator, n, warming=None, tolerance=None):
+def follow(law, path, integrator, n, warming=None, **tolerance):
     """States at the end of every segment, n increments each; `warming` as in the reference."""
     path = np.array(path, float)
     state, states = points.initial_state(law, 1, path.shape[1]), []
@@ -80,7 +80,7 @@ def follow(law, path, integrator, n, warming=None, tolerance=None):
         step = warming[i] / n if warming else 0.0
         for _ in range(n):
             at = (temperature, temperature + step) if warming else None
-            state, _, _ = heun.UPDATES[integrator](law, state, segment[None] / n, at, tolerance)
+            state, _, _ = heun.UPDATES[integrator](law, state, segment[None] / n, at, **tolerance)
             temperature += step
         states.append(state[0])
     return np.array(states)

@@ -1,6 +1,5 @@
 """The law over arrays of points from Python, without a mesh: one interface to both forms."""
 
-import math
 from typing import Any
 
 import numpy as np
@@ -11,10 +10,8 @@ from coilset.model.material.law.functions import CHANGE
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.choice import advance_points, solid_point
-from coilset.model.material.point.local import FAILED, TOO_HOT
+from coilset.model.material.point.local import TOO_HOT
 from coilset.model.runtime.kernels import njit
-
-SMALLEST_SUBSTEP = 1e-9
 
 
 @njit(**KERNEL)
@@ -49,7 +46,6 @@ def update(
     state: np.ndarray,
     increments: np.ndarray,
     temperature: float | tuple[float, float] | None = None,
-    tolerance: float | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Advance points by strain increments, without time; a pure function.
 
@@ -62,19 +58,15 @@ def update(
         increments: ε11, γ12, γ13, shape (points, 3), or ε11, ε22, ε33, γ12, γ13, γ23, shape (points, 6).
         temperature: of all points, K, where the state holds none; default is the reference temperature. A pair is the
             temperature at the start and at the end: thermal strain is then part of `increments`.
-        tolerance: error of stress, relative to the yield stress, allowed in a sub-step. None: one step of each
-            increment. With a number the increments are divided where the direction of loading changes; the tangent is
-            then that of the last sub-step.
 
     Returns:
-        The new state, the tangent (points, 3, 3) or (points, 6, 6) in N/mm², and the number of local iterations or
-        sub-steps of each point, 0 where it stayed elastic.
+        The new state, the tangent (points, 3, 3) or (points, 6, 6) in N/mm², and the number of local iterations of
+        each point, 0 where it stayed elastic.
 
     Raises:
         SolveError: if a point did not converge.
         InputError: if the temperature lies outside the material's table, or plastic work heats a point out of it.
-        ValueError: if shapes do not match, or a changing temperature is given for a material that heats itself or
-            together with `tolerance`.
+        ValueError: if shapes do not match, or a changing temperature is given for a material that heats itself.
     """
     state, increments = np.ascontiguousarray(state, float), np.ascontiguousarray(increments, float)
     points, components = increments.shape
@@ -83,20 +75,16 @@ def update(
     start, end = temperature if isinstance(temperature, tuple) else (temperature, temperature)
     point_law = law.point_law(end)
     if start is not None and end is not None and start != end:
-        if law.is_adiabatic or tolerance is not None:
-            raise ValueError("temperature changes neither with adiabatic heating nor with a tolerance")
+        if law.is_adiabatic:
+            raise ValueError("adiabatic heating finds the temperature itself")
         point_law = law.parts(law.parameters(end))
         point_law.plastic[CHANGE] = end - start
-        increments = increments - law.thermal_strain(start, end) * (np.arange(components) < _normals(components))
-    if tolerance is not None:
-        return _divided(point_law, law, state, increments, tolerance)
+        increments = increments - law.thermal_strain(start, end) * (
+            np.arange(components) < (1 if components == 3 else 3)
+        )
     new, tangent, count = _advance(point_law, state, increments)
     refuse(law, count)
     return new, tangent, count
-
-
-def _normals(components: int) -> int:
-    return 1 if components == 3 else 3
 
 
 def _advance(
@@ -122,32 +110,3 @@ def refuse(law: Law, count: np.ndarray) -> None:
         raise InputError(problem, "temperatures", law.file)
     if (count < 0).any():
         raise SolveError(f"{(count < 0).sum()} of {count.size} points did not converge; use smaller increments")
-
-
-def _divided(
-    point_law: np.ndarray | Parts, law: Law, state: np.ndarray, increments: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sub-steps by step doubling: comparing one step with two half steps gives the error of the second-order method."""
-    points, components = increments.shape
-    weight = np.where(np.arange(components) < _normals(components), 1.0, 2.0)
-    row, tangent = state.copy(), np.empty((points, components, components))
-    done, size, count = np.zeros(points), np.ones(points), np.zeros(points, dtype=np.int64)
-    while (open_ := np.flatnonzero(done < 1.0)).size:
-        h = np.minimum(size[open_], 1.0 - done[open_])
-        part = 0.5 * h[:, None] * increments[open_]
-        one, _, plain = _advance(point_law, row[open_], 2.0 * part)
-        half, _, first = _advance(point_law, row[open_], part)
-        two, C, second = _advance(point_law, half, part)
-        worst = np.minimum(np.minimum(plain, first), second)
-        lost = worst < 0
-        refuse(law, np.where(size[open_] < SMALLEST_SUBSTEP, np.where(lost, worst, FAILED), 0))
-        difference = ((one - two)[:, :components] ** 2 * weight).sum(axis=1)
-        error = np.sqrt(difference / law.k_squared(two[:, 2 * components])) / tolerance
-        error = np.where(lost, math.inf, error)
-        good = error <= 1.0
-        accepted = open_[good]
-        row[accepted], tangent[accepted] = two[good], C[good]
-        count[accepted] += second[good] > 0
-        done[accepted] = np.where(h[good] >= 1.0 - done[accepted], 1.0, done[accepted] + h[good])
-        size[open_] = h * np.clip(0.9 / np.cbrt(np.maximum(error, 1e-6)), 0.2, 4.0)
-    return row, tangent, count
