@@ -242,32 +242,15 @@ class MaterialFile(Strict):
     ] = None
 
 
+KINDS = (Elasticity, IsotropicHardening, Saturation, KinematicHardening, BackStress, NonNormality)
+CURVES = (Swift, Voce, RambergOsgood, Table)
+# Of all constants, by their names.
 UNITS = {
-    "G": "N/mm²",
-    "nu": "",
-    "alpha": "1/K",
-    "k0_squared": "N²/mm⁴",
-    "a1": "N²/mm⁴",
-    "a2": "mm²/N",
-    "a3": "mm²/N",
-    "b1": "N/mm²",
-    "k1_squared": "N²/mm⁴",
-    "k_inf_squared": "N²/mm⁴",
-    "a4": "mm²/N",
-    "a5": "N/mm²",
-    "a6": "mm²/N",
-    "a7": "mm²/N",
-    "a": "mm⁶/N³",
-    "up_to": "",
-    "C": "N/mm²",
-    "strain_0": "",
-    "n": "",
-    "yield_stress": "N/mm²",
-    "rise": "N/mm²",
-    "rate": "",
-    "proof_stress": "N/mm²",
-    "elastic_limit": "N/mm²",
-    "gamma": "",
+    name: "" if one.unit == "1" else str(one.unit)
+    for kind in KINDS + CURVES
+    for name, field in kind.model_fields.items()
+    for one in field.metadata
+    if isinstance(one, Unit)
 }
 
 
