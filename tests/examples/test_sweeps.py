@@ -53,7 +53,7 @@ def test_what_is_pressed_farther_sets_by_nearly_as_much_more():
 def test_other_programs_choose_the_cases(script, package, tmp_path):
     """Each script ends in an assertion of its own."""
     pytest.importorskip(package)
-    number = "20" if package == "optuna" else "16"
+    number = "10" if package == "optuna" else "8"
     command = [sys.executable, str(SWEEPS / f"{script}.py"), str(tmp_path / "out"), number]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=dict(os.environ), cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr

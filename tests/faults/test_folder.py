@@ -344,7 +344,7 @@ FIRST_TOUCH = ["contact.bedding=1e9", "solver.options={pc_type: none}"]
 @pytest.mark.parametrize("setting", FIRST_TOUCH)
 def test_a_failure_at_the_first_touch_ends_as_any_other(example, tmp_path, setting):
     with pytest.raises(SolveError) as caught:
-        solve(example, tmp_path / "out", False, [*SMALL, setting], True, comm=COMM)
+        solve(example, tmp_path / "out", False, [*SMALL, setting], False, comm=COMM)
     assert "\n" not in str(caught.value)
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert not summary["complete"]

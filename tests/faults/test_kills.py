@@ -1,8 +1,5 @@
-"""What compares killed runs sees what differs; one random spring is killed here, all others by kills.py, by command."""
+"""What compares killed runs sees what differs; springs are killed by kills.py, by command, and in test_resume.py."""
 
-import random
-
-import kills
 import numpy as np
 import pytest
 from kills import differing
@@ -39,17 +36,3 @@ def test_differences_are_seen(name, value, to_the_bit, nearly):
     assert differing(FOUND, now, True) == ({name} if to_the_bit else set())
     assert differing(FOUND, now, False) == ({name} if nearly else set())
     assert differing(now, dict(now), True) == set()
-
-
-def test_a_random_spring_with_friction_resumes_to_the_same_history(tmp_path, monkeypatch):
-    """To the bit, in history, seats, final state and summary; kills.py does so thirty times over several springs."""
-    monkeypatch.setattr(kills, "LONGEST", 0.1)
-    random.seed(7)
-    name = f"{kills.SPRING}7"  # a clamped cylinder, pressed twice
-    undisturbed = kills.fresh(tmp_path / "undisturbed", name)
-    kills.to_the_end(name, undisturbed, 0, [])
-    killed, count, left = tmp_path / "killed", 0, []
-    while not count:  # a run may come to its end before it is killed
-        count = kills.to_the_end(name, kills.fresh(killed, name), 1, left)
-    assert differing(kills.found(name, undisturbed), kills.found(name, killed), True) == set()
-    assert left == []
