@@ -51,6 +51,16 @@ def test_a_number_out_of_reach_does_not_keep_others_from_being_made_finer():
     assert needed(found, {"set_mm": 1.0}, ALL) == {}
 
 
+def test_a_number_that_would_cost_too_much_does_not_keep_others_from_being_made_finer():
+    """As the set of a valve spring, 0.6 mm: the force is brought within the accuracy alone."""
+    pairs = ((0.1, 0.3), (1.0, 3.0), (0.1, 1.0), (0.1, 0.3), (0.0, 0.0))
+    found = RunErrors(*(Errors(force, set_, None) for force, set_ in pairs))
+    both = {"force_N": 1.0, "set_mm": 1.0}
+    assert needed(found, both, ALL) == needed(found, {"force_N": 1.0}, ALL)
+    assert needed(found, both, ALL, 100.0)["section"] > 2.0
+    assert needed(found, both, ALL, 1.1) == {}
+
+
 def test_entries_of_the_case_are_kept(example):
     plain = ["mesh={}", "loading=[{to: block}]"]
     assert left_open(read_case(example, plain)) == ALL
