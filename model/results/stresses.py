@@ -9,12 +9,18 @@ import numpy as np
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.section import surface
 
+SAME_TURN = 1e-6  # turns: sections at the end of one element and at the start of the next one are nearer
+
 
 def is_middle(setup: Setup) -> np.ndarray:
     """Whether sections are in the middle turns: a turn from the tips, or from the end coils of closed ends."""
+    return _beyond_middle(setup) <= 0.0
+
+
+def _beyond_middle(setup: Setup) -> np.ndarray:
     spring = setup.spring
     first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
-    return surface.is_middle(setup.section_turns, first, last)
+    return surface.beyond_middle(setup.section_turns, first, last)
 
 
 def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.Peak:
@@ -49,9 +55,21 @@ def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
     halves are alike, the first.
     """
     values = _shear_inside(setup, snapshot)
-    size = np.abs(values)
-    at = int(np.argmax(size >= (1.0 - surface.TIE) * size.max()))
+    at = _largest(values)
     return float(values[at]), float(setup.section_turns[is_middle(setup)][at])
+
+
+def to_the_end(setup: Setup, snapshot: Snapshot) -> float:
+    """By how much `shear_inside` changes up to the end of the middle turns, MPa, on the straight line through the two
+    last sections; 0 where a section before the last has the largest value."""
+    values, middle = _shear_inside(setup, snapshot), is_middle(setup)
+    at, turns, rest = _largest(values), setup.section_turns[middle], -_beyond_middle(setup)[middle]
+    apart = np.abs(turns - turns[at])
+    others = np.flatnonzero(apart > SAME_TURN)
+    if not len(others) or min(turns[at] - turns.min(), turns.max() - turns[at]) > SAME_TURN:
+        return 0.0
+    near = others[np.argmin(apart[others])]
+    return float(abs(values[near] - values[at]) / apart[near] * rest[at])
 
 
 def change_of_sign(setup: Setup, snapshot: Snapshot, error: float) -> float:
@@ -60,6 +78,12 @@ def change_of_sign(setup: Setup, snapshot: Snapshot, error: float) -> float:
     values = _shear_inside(setup, snapshot)
     largest = sorted((abs(float(values.min(initial=0.0))), float(values.max(initial=0.0))))
     return sum(largest) if 0.0 < largest[1] < largest[0] + 2.0 * error else 0.0
+
+
+def _largest(values: np.ndarray) -> int:
+    """The first of the values of largest magnitude."""
+    size = np.abs(values)
+    return int(np.argmax(size >= (1.0 - surface.TIE) * size.max()))
 
 
 def _shear_inside(setup: Setup, snapshot: Snapshot) -> np.ndarray:

@@ -3,21 +3,23 @@
 The companion takes the steps that the run has taken, so that both have nearly the same error by their steps, and what
 they differ by shows the error of the **mesh**: the difference is as large as the run's own error where that falls with
 the first power of the elements' length, and three times as large where it falls with the second. Which part of it is
-stated was measured: FORCE, SET and SHEAR.
+stated was measured: FORCE, SET and SHEAR. Where the largest residual stress is at the last section of the middle turns,
+its change up to their end is added.
 
 A few of its sections are followed with a **finer rule** along the same strains. The work of the difference of their
 forces, s_finer − s, on the deformation of the step, over its travel, is the error of the force; on the elastic
 deformation of the first step it is what is left at the release, as in
 `coilset.model.equilibrium.path.step_error`. Wire with a past gets it with the finer rule, too, and the difference of
-its surface's shear counts as well.
+its surface's shear counts as well. SECTION times as much is stated.
 
 **Warping**: `curved` sections of wire that is not round keep the elastic warping as they yield. Sections at one and at
 three quarters of the wire are followed in the same way as ones that warp freely.
 
 **Contact**: bodies that lie in each other by p under pressures q hold the energy U = ½ Σ q p. Rigid ones hold none, and
 by the principle of minimum potential energy their spring's is greater by U to first order: its force is greater by
-dU/ds at the same travel, of which RIGID times as much is stated. The wire is compressed by 2U/F less than the travel
-says, which bounds the error of the set.
+dU/ds at the same travel, of which RIGID times as much is stated. The wire is compressed by p = 2U/F less than the
+travel says, which bounds the error of the set. Where coils stand on each other, the bedding takes a part ρ = dp/ds of
+all further travel; the stiffness of rigid ones is greater by 1/(1 − ρ) there, and with it the error of the force.
 """
 
 import itertools
@@ -38,8 +40,8 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.manufacture.initial_state import give_sections_past
 from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step
-from coilset.model.results.records.releases import Release, is_turned, last_release
-from coilset.model.results.stresses import change_of_sign, shear_inside
+from coilset.model.results.records.releases import FREE, Release, is_turned, last_release
+from coilset.model.results.stresses import change_of_sign, shear_inside, to_the_end
 from coilset.model.run.load_history import LoadHistory
 from coilset.model.run.working import working_states
 from coilset.model.section.kinds import make_sections
@@ -55,11 +57,13 @@ FINER_OUTLINE = 3  # times the points, of a section that is no disk
 WARPING = 2  # elements whose sections are followed as ones that warp freely
 WARPING_DEGREE, WARPING_POINTS = 7, 240  # a rectangle 2:1 far beyond yield: 0.4 % of the force too stiff
 STILL = 1e-9  # of the free length: a step of less travel is one of force or time
-# Error by the mesh over the difference to the companion. Forces: 1/3 by the second order, times 1.25 (Roache 1994). In
-# twelve springs with 8, 16 and 64 elements per turn the error at 16 was 0.00 to 0.45 of the difference of the forces,
-# 0.01 to 1.8 of that of the sets, 0.05 to 0.9 of that of the residual stresses.
-FORCE, SET, SHEAR = 1.25 / 3.0, 1.0, 1.0
+# Error by the mesh over the difference to the companion: a third by the second order, all of it by the first. In twelve
+# springs with 8, 16 and 64 elements per turn the error at 16 was 0.00 to 0.7 of the difference of the forces, 0.01 to
+# 1.8 of that of the sets, 0.05 to 0.9 of that of the residual stresses.
+FORCE, SET, SHEAR = 0.5, 1.0, 1.0
+SECTION = 1.25  # of the difference to the finer rule, which has an error of its own
 RIGID = 1.5  # of dU/ds: with forty times the bedding, forces of seven springs rose by 0.9 to 1.5 times as much
+TAKEN = 0.9  # part of the travel that the bedding takes at most: beyond, the force has no limit with rigid contacts
 NOT_KNOWN = Errors(None, None, None)
 
 
@@ -137,12 +141,14 @@ class _Seen:
         step: Step.
         section, warping: error of the force by the section rule and by elastic warping, N.
         energy: of the contacts' bedding, N mm.
+        taken: travel that the bedding has taken, mm; 0 without a force.
     """
 
     step: Step
     section: float
     warping: float
     energy: float
+    taken: float
 
 
 class _Followed:
@@ -236,7 +242,7 @@ class _Watch:
         if outline and keeps_elastic_warping(case, companion.spring) and warping_can_be_estimated(case, law):
             finer = outline.rule(max(WARPING_POINTS, len(rule)))
             self.warping = _Followed(companion, WARPING, "warping", finer, WARPING_DEGREE)
-        self.travel, self.seen = 0.0, list[_Seen]()
+        self.travel, self.greatest, self.seen = 0.0, 0.0, list[_Seen]()
 
     def __call__(self, step: Step) -> None:
         travel, self.travel = step.travel_mm - self.travel, step.travel_mm
@@ -248,7 +254,10 @@ class _Watch:
         for part in self.companion.system.last.contributions:
             counted = part.bears & layout.begins_here(part.dofs)  # contacts that join two ranks' parts are on both
             energy += 0.5 * float(part.pressure[counted] @ part.penetration[counted])
-        self.seen.append(_Seen(step, section, warping, sum_of_ranks(self.comm, energy)))
+        energy, force = sum_of_ranks(self.comm, energy), abs(step.force_N)
+        self.greatest = max(self.greatest, force)
+        taken = 2.0 * energy / force if force > FREE * self.greatest else 0.0
+        self.seen.append(_Seen(step, section, warping, energy, taken))
 
     def surface_errors(self) -> tuple[float, float]:
         """Errors of the shear stress at the inside by the section rule and by elastic warping, MPa; collective."""
@@ -295,7 +304,8 @@ def _judged(
         slope, other = _shear_slope(setup, result, release), shear_inside(companion.setup, theirs.snapshot)[0]
         shears = [None if one is None else slope * one for one in sets]
         by_mesh = SHEAR * abs(other - shear_inside(setup, release.snapshot)[0])
-        for k, surface in zip((1, 3), surfaces, strict=True):
+        by_mesh += to_the_end(setup, release.snapshot)
+        for k, surface in zip((1, 3), (SECTION * surfaces[0], surfaces[1]), strict=True):
             shears[k] = None if (shear := shears[k]) is None else shear + surface
         by_mesh += change_of_sign(setup, release.snapshot, by_mesh + sum(one or 0.0 for one in shears[1:]))
         shears[0] = by_mesh
@@ -320,27 +330,28 @@ def _step_errors(step: Step, seen: Sequence[_Seen], number: int | None, stiffnes
         return _StepErrors((math.nan,) * 4, (math.nan,) * 4)
     one = seen[number]
     force = abs(one.step.force_N - step.force_N) + abs(one.step.seat_height_mm - step.seat_height_mm) * stiffness
-    forces = FORCE * force, one.section, _contact_force(seen, number), one.warping
+    forces = FORCE * force, SECTION * one.section, _contact_force(seen, number), one.warping
     return _StepErrors(forces, tuple(value / stiffness if stiffness else math.nan for value in forces))
 
 
 def _contact_force(seen: Sequence[_Seen], number: int) -> float:
-    """RIGID dU/ds over the last step with a travel, N; 0 before there is one."""
+    """RIGID dU/ds / (1 − ρ) over the last step with a travel, N; 0 before there is one."""
     for k in range(number, -1, -1):
         before = seen[k - 1] if k else None
         way = seen[k].step.travel_mm - (before.step.travel_mm if before else 0.0)
         if abs(way) > 0.0:
-            return RIGID * abs((seen[k].energy - (before.energy if before else 0.0)) / way)
+            energy, taken = seen[k].energy, seen[k].taken
+            if before:
+                energy, taken = energy - before.energy, taken - before.taken
+            return RIGID * abs(energy / way) / (1.0 - min(max(taken / way, 0.0), TAKEN))
     return 0.0
 
 
 def _by_contact(seen: Sequence[_Seen], release: Release) -> float | None:
-    """Bound of the error of the set by the penetration 2U/F at the maximum force, mm, and at most the set: where wire
-    flows, all of its travel stays. None of a spring without a force."""
+    """Bound of the error of the set by what the bedding has taken at the maximum force, mm, and at most the set: where
+    wire flows, all of it stays. None of a spring without a force."""
     top = max(seen, key=lambda one: abs(one.step.force_N))
-    if not top.step.force_N:
-        return None
-    return min(abs(2.0 * top.energy / top.step.force_N), abs(release.set))
+    return min(top.taken, abs(release.set)) if top.step.force_N else None
 
 
 def _shear_slope(setup: Setup, result: Result, release: Release) -> float:

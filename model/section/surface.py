@@ -127,13 +127,14 @@ def peak(values: np.ndarray, turns: np.ndarray, inside: Inside) -> Peak:
     return Peak(here - 0.25 * (before - after) * off, float(turns[at[:-1]]), angle)
 
 
-def is_middle(turns: np.ndarray, first: float, last: float) -> np.ndarray:
-    """Whether turns are a turn away from the ends of those between `first` and `last`.
+def beyond_middle(turns: np.ndarray, first: float, last: float) -> np.ndarray:
+    """How far turns are outside those that are a turn away from the ends of those between `first` and `last`; negative
+    inside.
 
     With less than two and a half turns, a quarter of a turn on both sides of the middle remains.
     """
     reach = max(0.5 * (last - first) - 1.0, 0.25)
-    return np.abs(turns - 0.5 * (first + last)) <= reach
+    return np.abs(turns - 0.5 * (first + last)) - reach
 
 
 def nominal_shear(force: float, mean_diameter: float, wire_diameter: float) -> float:

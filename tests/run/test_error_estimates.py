@@ -1,6 +1,7 @@
 """Errors by mesh, section rule and contact against the differences to finer runs."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 from mpi4py import MPI
@@ -9,6 +10,7 @@ from coilset.model.base.errors import SolveError
 from coilset.model.case import check, read_case
 from coilset.model.results.records.labels import largest_errors, within
 from coilset.model.results.records.summary import summarise
+from coilset.model.run import error_estimates
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.error_estimates import coarse_case
 
@@ -68,6 +70,18 @@ def test_contact_is_off_by_what_a_stiffer_bedding_changes(example):
     _, stiff = analysed(example, "contact.bedding=1050000", estimates=False)  # twenty times the default
     true = stiff["force_max_N"] - summary["force_max_N"]
     assert 0.5 < summary["estimated_errors"]["contact"]["force_N"] / true < 2.0
+
+
+def test_a_bedding_in_series_with_a_spring_is_off_by_all_that_it_takes():
+    """F = s/(1/k + c); rigid contacts give k s, which is greater by k c F."""
+    stiffness, compliance, ends = 800.0, 1.0 / 900.0, (0.999, 1.0)
+    seen = []
+    for travel in ends:
+        force = travel / (1.0 / stiffness + compliance)
+        step = SimpleNamespace(travel_mm=travel, force_N=force)
+        seen.append(error_estimates._Seen(step, 0.0, 0.0, 0.5 * compliance * force**2, compliance * force))
+    true = stiffness * ends[1] - force
+    assert error_estimates._contact_force(seen, 1) / error_estimates.RIGID == pytest.approx(true, rel=1e-3)
 
 
 def test_elastic_warping_is_off_by_what_free_warping_changes():

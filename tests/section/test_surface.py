@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coilset.model.section.rules import rim
-from coilset.model.section.surface import Inside, equivalent, is_middle, nominal_shear, peak, shear
+from coilset.model.section.surface import Inside, beyond_middle, equivalent, nominal_shear, peak, shear
 
 PLANE = ("s11", "t12", "t13", "B11", "B12", "B13", "b")
 WARPING = ("s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12", "B13", "B23", "b")
@@ -54,9 +54,9 @@ def test_of_two_peaks_that_differ_by_rounding_the_first_is_told(rounding):
 
 
 def test_middle_turns():
-    np.testing.assert_array_equal(is_middle(np.array([0.9, 1.1, 2.9, 3.1]), 0.0, 4.0), [False, True, True, False])
-    np.testing.assert_array_equal(is_middle(np.array([1.9, 2.1, 3.9, 4.1]), 1.0, 5.0), [False, True, True, False])
-    np.testing.assert_array_equal(is_middle(np.array([0.2, 0.3, 0.7, 0.8]), 0.0, 1.0), [False, True, True, False])
+    np.testing.assert_allclose(beyond_middle(np.array([0.9, 1.1, 2.9, 3.1]), 0.0, 4.0), [0.1, -0.1, -0.1, 0.1])
+    np.testing.assert_allclose(beyond_middle(np.array([1.9, 2.1, 3.9, 4.1]), 1.0, 5.0), [0.1, -0.1, -0.1, 0.1])
+    np.testing.assert_allclose(beyond_middle(np.array([0.2, 0.3, 0.7, 0.8]), 0.0, 1.0), [0.05, -0.05, -0.05, 0.05])
 
 
 def test_nominal_shear_is_torsion_of_the_disk():

@@ -1,7 +1,4 @@
-"""Quick springs of `verify stated-error`: true errors are below the stated ones.
-
-Spring 194 is as quick and is left out: its force at 90 % of the travel is off by 0.144 N, 0.143 N are stated.
-"""
+"""Quick springs of `verify stated-error`: true errors are below the stated ones."""
 
 import pytest
 
@@ -10,7 +7,7 @@ from coilset.verification.random_springs import stated_error
 NOTHING = 1e-6  # N, mm, MPa: smaller numbers are rounding, as the set of a spring that stays elastic
 
 
-@pytest.mark.parametrize("number", [10, 39, 43, 57, 106, 161, 175, 199])
+@pytest.mark.parametrize("number", [10, 57, 69, 106, 151, 161, 192, 194, 199, 202])
 def test_true_errors_are_below_the_stated_ones(number):
     true, found = stated_error.references()[number], stated_error.run(number)
     assert found.keys() == true.keys()
