@@ -1,12 +1,21 @@
 """Rooms of the program: their imports run in one direction, and each stays small enough to be read."""
 
 import ast
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+TOPS = ("meshes", "model", "verification", "scripts")
+
+
+@cache
+def sources():
+    """Each file of the program with its syntax tree."""
+    files = [file for top in TOPS for file in sorted((ROOT / top).rglob("*.py"))]
+    return [(file.relative_to(ROOT), ast.parse(file.read_text(encoding="utf-8"))) for file in files]
 
 
 def room(module):
@@ -15,18 +24,18 @@ def room(module):
     return ".".join(parts[:2]) if parts[0] == "model" else parts[0]
 
 
+@cache
 def imports():
     """The rooms that each room imports from."""
     found = {}
-    for top in ("meshes", "model", "verification", "scripts"):
-        for file in (ROOT / top).rglob("*.py"):
-            own = room(".".join(["coilset", *file.relative_to(ROOT).with_suffix("").parts]))
-            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-                if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("coilset."):
-                    names = [f"{node.module}.{one.name}" for one in node.names]
-                    if node.module != "coilset.model":
-                        names = [node.module]
-                    found.setdefault(own, set()).update(room(name) for name in names if room(name) != own)
+    for file, tree in sources():
+        own = room(".".join(["coilset", *file.with_suffix("").parts]))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("coilset."):
+                names = [f"{node.module}.{one.name}" for one in node.names]
+                if node.module != "coilset.model":
+                    names = [node.module]
+                found.setdefault(own, set()).update(room(name) for name in names if room(name) != own)
     return found
 
 
@@ -54,7 +63,6 @@ def test_meshes_import_only_the_base_of_the_model():
 
 
 MOST_FILES, MOST_PARAMETERS = 14, 10
-TOPS = ("meshes", "model", "verification", "scripts")
 # What is larger still, with its number: it may become smaller, and nothing may be added.
 PARAMETERS = {
     "model/material/point/back_stresses.py": 1,
@@ -71,13 +79,6 @@ PARAMETERS = {
 CTYPES = {"model/equilibrium/system/aij.py", "model/results/files/alternating.py", "model/runtime/processes.py"}
 
 
-def sources():
-    """Each file of the program with its syntax tree."""
-    for top in TOPS:
-        for file in sorted((ROOT / top).rglob("*.py")):
-            yield file.relative_to(ROOT), ast.parse(file.read_text(encoding="utf-8"))
-
-
 def test_a_folder_has_at_most_fourteen_files():
     sizes = {}
     for file, _ in sources():
@@ -85,6 +86,23 @@ def test_a_folder_has_at_most_fourteen_files():
             folder = file.parent.as_posix()
             sizes[folder] = sizes.get(folder, 0) + 1
     assert {folder: size for folder, size in sizes.items() if size > MOST_FILES} == {}
+
+
+def test_no_files_import_each_other_in_a_circle():
+    """Imports within functions and for types alone count, too."""
+    files = {".".join(file.with_suffix("").parts): tree for file, tree in sources()}
+    found = {}
+    for name, tree in files.items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("coilset."):
+                module = node.module.removeprefix("coilset.")
+                named = {f"{module}.{one.name}" for one in node.names}
+                found.setdefault(name, set()).update((named | {module}) & files.keys())
+    assert sum(map(len, found.values())) > 1000
+    try:
+        TopologicalSorter(found).prepare()
+    except CycleError as error:
+        pytest.fail(f"a circle of files: {' → '.join(error.args[1])}")
 
 
 def is_command(function):

@@ -7,7 +7,6 @@ import numpy as np
 from mpi4py import MPI
 from scipy.spatial.transform import Rotation
 
-from coilset.meshes.frame import frame_mesh
 from coilset.meshes.springs.placement import Placement
 from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.newton.contact_limit import ContactLimit
@@ -22,6 +21,7 @@ from coilset.model.equilibrium.system.system import System
 from coilset.model.material.law.law import Law
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import DiskRule
+from coilset.verification.frame_mesh import frame_mesh
 
 FREE_PENETRATION = 0.02  # wire diameters that a correction may press, as for springs
 FAR = 0.5  # rad
