@@ -75,10 +75,12 @@ def _saved(folder: Path, case: Case, comm: MPI.Comm) -> Saved:
 
 
 def _gone_on(case: Case, at: str) -> Case:
-    """The case with one more phase, to a state."""
+    """The case with one more phase, to a state; in equal steps where their errors are not estimated."""
     phase = phase_to(at, case.spring.build())
     if phase is None:
         return case
+    if case.steps_error is None:
+        phase["steps"] = case.solver.control.steps.automatic
     data = case.model_dump(mode="json")
     gone: Case = check(data | {"loading": [*data["loading"], phase]}, Path("case"))
     return gone

@@ -16,6 +16,7 @@ from coilset.model.results.files.folder import clear, prepare, write_summary
 from coilset.model.results.records.provenance import origin
 from coilset.model.turn import output
 from coilset.model.turn.analysis import GRID, LAYERS, TurnAnalysis, TurnStep
+from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.progress import duration, quantity, without_minus
 from coilset.scripts.terminal.target import results_folder
@@ -54,7 +55,7 @@ def solid_case(
         pictures: draw the figures.
 
     Raises:
-        InputError, SolveError: the latter after the results so far are written.
+        InputError, SolveError, KeyboardInterrupt: the latter two after the results so far are written.
     """
     comm, console = MPI.COMM_WORLD, Console(quiet=MPI.COMM_WORLD.rank > 0)
     case = read_case(case_file, settings)
@@ -70,11 +71,12 @@ def solid_case(
         f"{cost.steps} steps: about {duration(cost.seconds)}"
     )
     console.print(" step travel, mm    force, N  rod's, N  iter.")
-    failure = None
-    try:
-        analysis.run(lambda step: console.print(_row(step)))
-    except SolveError as error:
-        failure = error
+    failure: BaseException | None = None
+    with Interrupt(comm, console.say) as interrupt:
+        try:
+            analysis.run(lambda step: _report(step, console, interrupt))
+        except (SolveError, KeyboardInterrupt) as error:
+            failure = error
     summary = output.summarise(analysis)
     on_first_rank(comm, lambda: _write(folder, analysis, summary, pictures))
     _conclude(console, summary, folder)
@@ -84,6 +86,11 @@ def solid_case(
 
 def _placed(error: InputError, case_file: str | Path) -> InputError:
     return InputError(error.problem, error.place, case_file)
+
+
+def _report(step: TurnStep, console: Console, interrupt: Interrupt) -> None:
+    console.print(_row(step))
+    interrupt.check()
 
 
 def _row(step: TurnStep) -> str:

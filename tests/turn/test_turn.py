@@ -11,8 +11,10 @@ from coilset.model.run.examples import EXAMPLES
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.turn.analysis import TurnAnalysis
 from coilset.scripts.commands.solid import solid_case
+from coilset.scripts.interrupt import Interrupt
 
 CASE = EXAMPLES / "time" / "relaxation.yaml"
+PRESETTING = EXAMPLES / "ck15_presetting.yaml"
 SHORT = ["spring.mean_diameter=30", "spring.pitch=12", "mesh.section={radial: 4, angular: 8}", "accuracy=none"]
 PROGRAM = "loading=[{to: {travel: 14}, steps: 2}, {hold: {hours: 10}, steps: 1}, {to: {force: 0}, steps: 1}]"
 
@@ -38,6 +40,19 @@ def test_a_turn_presses_creeps_and_is_released_like_the_rod(tmp_path):
         assert rod[name] == pytest.approx(summary[name], rel=tolerance), name
     assert summary["residual_shear_inside_MPa"] < 0.0 < summary["shear_inside_max_MPa"]
     assert sorted(path.name for path in (tmp_path / "fields").glob("*.vtu"))[0] == "01_travel_14_mm.vtu"
+
+
+def test_an_interrupted_run_keeps_its_steps(tmp_path, monkeypatch):
+    def stop(_interrupt):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Interrupt, "check", stop)
+    small = ["mesh={elements_per_turn: 4, section: {radial: 2, angular: 8}}", "loading=[{to: {travel: 2}, steps: 2}]"]
+    with pytest.raises(KeyboardInterrupt):
+        solid_case(PRESETTING, tmp_path, settings=[*small, "accuracy=none"], across=1, layers=4, pictures=False)
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert not summary["complete"]
+    assert summary["steps"] == len((tmp_path / "history.csv").read_text().splitlines()) - 1 == 1
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards.buckling import critical_travel
 from coilset.model.standards.en13906 import natural_frequency
-from coilset.model.vibration.loaded import phase_to
+from coilset.model.vibration.loaded import _gone_on, phase_to
 from coilset.model.vibration.mass import TONNE
 from coilset.model.vibration.modes import _glued, natural_modes
 from coilset.verification.chain import ALL, X, chain, elastic, straight
@@ -144,6 +144,13 @@ def test_states_in_words():
     assert phase_to("force=12.5", coil) == {"to": {"force": 12.5}}
     with pytest.raises(InputError, match="is no state; give end, block"):
         phase_to("blocked", coil)
+
+
+def test_the_way_to_a_state_has_equal_steps_where_errors_are_not_estimated():
+    entries = {"spring": CK15 | {"turns": 3.0, "pitch": 12.0}, "material": "elastic"}
+    case = check(entries | {"loading": [{"to": {"travel": 1.0}, "steps": 1}], "accuracy": "none"})
+    assert _gone_on(case, "travel=2").loading[-1].steps == case.solver.control.steps.automatic
+    assert _gone_on(case, "end") is case
 
 
 def test_load_that_holds_nothing_leaves_six_rigid_modes():
