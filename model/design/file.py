@@ -51,6 +51,9 @@ Positive = Field(gt=0)
 Length = Annotated[Annotated[float, Unit("mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Force = Annotated[Annotated[float, Unit("N"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Rate = Annotated[Annotated[float, Unit("N/mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+TurnRate = Annotated[Annotated[float, Unit("N mm/°"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+Torque = Annotated[Annotated[float, Unit("N mm"), Tag("(value)")] | OrLimits, OR_LIMITS]
+Turn = Annotated[Annotated[float, Unit("degrees"), Tag("(value)")] | OrLimits, OR_LIMITS]
 Work = Annotated[Annotated[float, Unit("N/mm²"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Size = Annotated[Annotated[float, Tag("(value)")] | OrLimits, OR_LIMITS]
 Stress = Annotated[Annotated[float, Unit("MPa"), Tag("(value)")] | OrLimits, OR_LIMITS]
@@ -75,6 +78,18 @@ class Conditions(Strict):
     block_height_mm: Annotated[Length | None, Field(description="height at which all coils touch, mm")] = None
     rate_N_per_mm: Annotated[Rate | None, Field(description="initial rate of the spring as wound, N/mm")] = None
     force_max_N: Annotated[Force | None, Field(description="maximum force of the program, N")] = None
+    open_rate_N_per_mm: Annotated[Rate | None, Field(description="rate of an extension spring with open coils")] = None
+    initial_tension_after_N: Annotated[
+        Force | None, Field(description="initial tension that the last release leaves, N")
+    ] = None
+    turn_rate_Nmm_per_deg: Annotated[TurnRate | None, Field(description="rate of a torsion spring, N mm/°")] = None
+    torque_max_Nmm: Annotated[Torque | None, Field(description="maximum torque of a torsion spring, N mm")] = None
+    turn_set_deg: Annotated[
+        Turn | None, Field(description="rotation that a torsion spring keeps, degrees, with the sign of its rotation")
+    ] = None
+    inner_diameter_min_mm: Annotated[
+        Length | None, Field(description="smallest inner diameter of the coils under load, for an arbor, mm")
+    ] = None
     force_at: Annotated[
         list[ForceAt],
         BeforeValidator(lambda value: [value] if isinstance(value, dict | ForceAt) else value),

@@ -31,6 +31,8 @@ if TYPE_CHECKING:  # at run time only after the environment is saved
     from mpi4py import MPI
 
 REPORT_SECONDS = 30.0  # seconds between progress lines without a terminal
+OF_PRESSED = "set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_max_MPa"  # numbers of which statistics are shown
+OF_TURNED = "turn_set_deg", "torque_max_Nmm", "turn_rate_Nmm_per_deg", "residual_bending_inside_MPa"
 SHOWN_FAILURES = 5
 KEPT_FROM = 10_000  # cases: from here on reading them again is worth a file
 
@@ -216,7 +218,8 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     table = Table(show_header=True, box=None, padding=(0, 2))
     for column in ("", "minimum", "mean", "maximum"):
         table.add_column(column, justify="left" if not column else "right")
-    for name in ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_max_MPa"):
+    turned = "turn_set_deg" in data and data["turn_set_deg"].notnull().any()
+    for name in OF_TURNED if turned else OF_PRESSED:
         if name in data and data[name].notnull().any():
             words, unit = dataset.quantity(name)
             values = data[name]
