@@ -4,6 +4,9 @@ Force at 50, 90 and 100 % of the travel, set and residual shear stress inside, e
 against references with 64 elements a turn, 16 × 64 section points, an accuracy of 0.02 % and a bedding as stiff as E,
 four times the default (`verification/random_springs/stated_error.py` makes them, `stated_error.yaml` holds them).
 
+The factors of the estimates were chosen with the first 32 springs; a note says how the fresh ones fare, which are few
+and of moderate cost: none of them goes to block.
+
 Tolerances: at most 5 % of the true errors are above the stated ones, and the median of stated over true is at most 5.
 """
 
@@ -42,11 +45,13 @@ def run(study: Study) -> None:
                 ratios.setdefault(name, []).append(ratio)
     study.table("all numbers", ["spring", "number", "reference", "run", "true error", "stated", "stated/true"], rows)
     everything = np.concatenate([np.array(values) for values in ratios.values()])
+    fresh = np.array([row[-1] for row in rows if row[0] in stated_error.FRESH and row[-1] is not None], float)
     unknown = sum(row[5] is None for row in rows)
     study.note(f"{len(stated_error.references())} springs, {len(rows)} numbers, {unknown} without a stated error.")
     beyond = float(np.mean(everything < 1.0))
     study.check("part of the true errors above the stated ones", beyond, BEYOND, "bound", 0.0, "at_most")
     study.check("median of stated over true error", np.median(everything), MEDIAN, "bound", 0.0, "at_most")
+    study.note(f"Fresh springs: {np.sum(fresh < 1.0)} of {len(fresh)} above, median {np.median(fresh):.2g}.")
     for name, values in ratios.items():
         low, middle, high = np.quantile(values, (0.1, 0.5, 0.9))
         study.note(f"{name}: stated over true {low:.2g}, {middle:.2g}, {high:.2g} (10, 50, 90 %).")
