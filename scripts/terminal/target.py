@@ -10,6 +10,7 @@ OVERWRITE = ("--overwrite", "--force")
 """Names of the option that replaces existing results; the second is its earlier name."""
 SHEETS = (".html", ".pdf", ".csv", ".dxf", ".step")
 """Suffixes of the files of a data sheet."""
+FILE = re.compile(r"\.[A-Za-z]{2,5}")  # suffix of a file rather than part of a folder's name
 UNFIT = re.compile(r"[/\0]|^\.+$")  # in the name of a folder
 
 
@@ -31,6 +32,8 @@ def sheet_targets(paths: list[str] | None) -> list[str]:
     of_sheet = [path for path in paths or [] if os.path.splitext(path)[1].lower() in SHEETS]
     for path in paths or []:
         if path not in of_sheet:
+            if FILE.fullmatch(os.path.splitext(path)[1]) and not os.path.isdir(path):
+                raise InputError(f"'{path}' must end in {', '.join(SHEETS)}, or be a folder", "--out")
             folder_target(path)
     return [_file(path, "--out") if path in of_sheet else os.path.expanduser(path) for path in paths or []]
 

@@ -4,7 +4,7 @@ import pytest
 
 from coilset.model.base.errors import InputError
 from coilset.scripts.main import app
-from coilset.scripts.terminal.target import file_targets, folder_target
+from coilset.scripts.terminal.target import file_targets, folder_target, sheet_targets
 
 COMMANDS = [
     "solve CASE",
@@ -40,6 +40,14 @@ def test_a_target_that_cannot_be_gets_one_line(example, tmp_path, monkeypatch, c
         app([*words, "--out", target], prog_name="coilset", standalone_mode=False)
     assert "\n" not in str(caught.value)
     assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+
+
+@pytest.mark.parametrize("target", ["offer.docx", "new/spring.stp"])
+def test_a_sheet_of_another_kind_is_no_folder(tmp_path, monkeypatch, target):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match=r"must end in .html, .pdf, .csv, .dxf, .step, or be a folder"):
+        sheet_targets([target])
+    assert sheet_targets(["results/v1.2", "offer.pdf"]) == ["results/v1.2", "offer.pdf"]
 
 
 @pytest.mark.parametrize("target", ["new/x.foo", "new/x.stl", "new/x", ".msh", "new/x.vtu.gz"])
