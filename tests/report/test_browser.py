@@ -56,7 +56,7 @@ def sweep_page(tmp_path_factory):
     with closing(Journal(out / "journal.jsonl")) as journal:
         for number, key in enumerate(plan.keys, 1):
             failed = number % 10 == 0
-            steps = {"travel_mm": [2.0, 6.0], "force_N": [80.0, 0.2 * number]}
+            steps = dict.fromkeys(dataset.CURVE, [0.0, 0.0]) | {"travel_mm": [2.0, 6.0], "force_N": [80.0, 0.2 * number]}
             journal.append(
                 {
                     "key": key,
@@ -178,7 +178,7 @@ def test_limits_have_their_table_and_histogram(browser, sweep_page):
     browser.look(1280)
     browser.open(sweep_page)
     row = browser.run("return document.querySelector('[aria-label=\"limits and capability\"] tbody').innerText")
-    assert row.split("\t")[:2] == ["set, mm", "100 … 900"]
+    assert row.split("\t")[:2] == ["set", "100 to 900 mm"]
     assert "tighten" in row
     drawn(browser)
     figure = "document.getElementById('limits_set_mm')"
