@@ -56,7 +56,8 @@ def sweep_page(tmp_path_factory):
     with closing(Journal(out / "journal.jsonl")) as journal:
         for number, key in enumerate(plan.keys, 1):
             failed = number % 10 == 0
-            steps = dict.fromkeys(dataset.CURVE, [0.0, 0.0]) | {"travel_mm": [2.0, 6.0], "force_N": [80.0, 0.2 * number]}
+            steps = {name: [0.0, 0.0] for name in dataset.CURVE}
+            steps |= {"travel_mm": [2.0, 6.0], "force_N": [80.0, 0.2 * number]}
             journal.append(
                 {
                     "key": key,
