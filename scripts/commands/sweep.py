@@ -226,10 +226,10 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
             numbers = (f"{float(value):.5g}" for value in (values.min(), values.mean(), values.max()))
             table.add_row(f"{words}, {unit}", *numbers)
     console.print(table)
-    failures = data.where(data.status == "failed", drop=True)
-    for k in range(min(failures.sizes["case"], SHOWN_FAILURES)):
-        inputs = ", ".join(f"{name} = {failures[name].values[k]}" for name in plan.names)
-        console.warn(f"{inputs}: {failures.reason.values[k]}", "failed")
+    failures = [k for k, status in enumerate(data.status.values) if status == "failed"]
+    for k in failures[:SHOWN_FAILURES]:
+        inputs = ", ".join(f"{name} = {data[name].values[k]}" for name in plan.names)
+        console.warn(f"{inputs}: {data.reason.values[k]}", "failed")
     console.print(", ".join(f"{count} {status}" for status, count in counts.items() if count or status == "done"))
     console.say(
         f"results in {out}{os.sep} (sweep.nc, sweep.parquet, journal.jsonl{''.join(', ' + name for name in files)})"
