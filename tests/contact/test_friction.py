@@ -271,6 +271,7 @@ def analyse(friction, comm=MPI.COMM_SELF, number=STEPS):
         "contact": {"friction": friction},
         "loading": loading,
         "accuracy": "none",
+        "mesh": {"elements_per_turn": 10, "section": {"radial": 2, "angular": 8}},
         "seats": {"hold": "groove"},
     }
     return Analysis(check(data), comm)

@@ -13,7 +13,13 @@ from coilset.model.results.files.folder import write_seats
 from coilset.model.results.records.record import SeatReactions
 from coilset.model.run.analysis import Analysis
 
-COARSE = ["mesh.section.rule=abramowitz9", "loading.0.steps=6", "loading.1.steps=4", "accuracy=none"]
+COARSE = [
+    "mesh.section.rule=abramowitz9",
+    "mesh.elements_per_turn=10",
+    "loading.0.steps=6",
+    "loading.1.steps=4",
+    "accuracy=none",
+]
 CLOSED = {
     "wire_diameter": 4.0,
     "mean_diameter": 32.0,

@@ -19,6 +19,7 @@ SETTINGS = [
     "accuracy=none",
     "loading.0.steps=12",
     "loading.1.steps=6",
+    "mesh.elements_per_turn=12",
     "mesh.section.radial=4",
     "mesh.section.angular=12",
 ]
