@@ -12,8 +12,8 @@ deformation of the first step it is what is left at the release, as in
 `coilset.model.equilibrium.path.step_error`. Wire with a past gets it with the finer rule, too, and the difference of
 its surface's shear counts as well. SECTION times as much is stated.
 
-**Warping**: `curved` sections of wire that is not round keep the elastic warping as they yield. Sections at one and at
-three quarters of the wire are followed in the same way as ones that warp freely.
+**Warping**: `curved` sections of wire that is not round keep the elastic warping as they yield. Sections of four
+elements, evenly spread, are followed in the same way as ones that warp freely.
 
 **Contact**: bodies that lie in each other by p under pressures q hold the energy U = ½ Σ q p. Rigid ones hold none, and
 by the principle of minimum potential energy their spring's is greater by U to first order: its force is greater by
@@ -54,8 +54,8 @@ log = logging.getLogger("coilset.steps")
 FOLLOWED = 8  # elements whose sections are followed with the finer rule
 RINGS, ANGLES = 12, 48  # of the finer rule at least
 FINER_OUTLINE = 3  # times the points, of a section that is no disk
-WARPING = 2  # elements whose sections are followed as ones that warp freely
-WARPING_DEGREE, WARPING_POINTS = 7, 240  # a rectangle 2:1 far beyond yield: 0.4 % of the force too stiff
+WARPING = 4  # elements whose sections are followed as ones that warp freely
+WARPING_DEGREE, WARPING_POINTS = 7, 160  # a rectangle 2:1 far beyond yield: 0.4 % of the force too stiff
 STILL = 1e-9  # of the free length: a step of less travel is one of force or time
 # Error by the mesh over the difference to the companion: a third by the second order, all of it by the first. In twelve
 # springs with 8, 16 and 64 elements per turn the error at 16 was 0.00 to 0.7 of the difference of the forces, 0.01 to
