@@ -48,13 +48,14 @@ def write_sweep_report(folder: str | Path) -> Path:
     cases, sample = f"{data.attrs.get('cases', data.sizes['case']):,} cases", ""
     if data.sizes["case"] < data.attrs.get("cases", 0):
         sample = f"A sample of {data.sizes['case']:,} of the {cases}, evenly spread over the plan"
+    uniform = "; uniform rods, without ends and contacts" if data.attrs.get("model") == "uniform_rod" else ""
     return write_page(
         folder,
         "sweep",
         [("Limits", [histogram(one) for one in capable]), ("Which input matters most", panels)],
         {"columns": columns, "curves": _curves(data), "files": _files(data)},
         title=f"{folder.resolve().name}: {cases}",
-        subtitle=f"{sample or cases}; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')})",
+        subtitle=f"{sample or cases}; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')}){uniform}",
         sample=sample,
         answer=[
             Number(
