@@ -12,7 +12,7 @@ from coilset.model.equilibrium.path.guess import Guess
 from coilset.model.equilibrium.path.step_control import Position
 from coilset.model.equilibrium.system.load import Load
 
-LOAD = SimpleNamespace(held=np.array([], dtype=int))
+LOAD = SimpleNamespace(held=np.array([], dtype=int), layout=SimpleNamespace(comm=MPI.COMM_SELF))
 pytestmark = pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="needs no ranks")
 
 
