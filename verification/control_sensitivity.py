@@ -6,7 +6,7 @@ Each spring goes to block and back to zero force, once per variant. A number wit
 halfway to 1; for a growth factor, which is at least 1, the excess over 1 is halved and doubled; the travel of the probe
 and the numbers of automatic steps are varied like all others. Iterations, evaluated states (updates of the body, those
 of line searches included), failed solves and cuts are counted. Each row is written as soon as it is known. `--page
-FILE.csv …` prints the table of docs/methods.md from such files: the minimum and the maximum number of states over all
+FILE.csv …` prints the table of docs/tuning.md from such files: the minimum and the maximum number of states over all
 springs in them, relative to those with the number as it is, and how many more failed solves and cuts all springs had
 together.
 """
@@ -156,7 +156,7 @@ Rows = dict[str, dict[str, dict[str, str]]]
 
 
 def page(files: Iterable[Path]) -> None:
-    """Print the table of docs/methods.md from files that `table` has written."""
+    """Print the table of docs/tuning.md from files that `table` has written."""
     springs: Rows = {}
     for path in files:
         with path.open(encoding="utf-8") as file:

@@ -1,6 +1,6 @@
 """All numbers that control the iteration and the steps, with their units; `solver.control` of a case file.
 
-How much each of them matters is measured in docs/methods.md: each halved and doubled over the shipped springs.
+How much each of them matters is measured in docs/tuning.md: each halved and doubled over the shipped springs.
 """
 
 from dataclasses import dataclass
