@@ -12,7 +12,7 @@ from coilset.scripts.commands.solve import solve
 from coilset.scripts.interrupt import Interrupt
 
 ALL = {"steps", "mesh", "section", "contact"}
-FINE = ["mesh={}", "ends=clamped", "accuracy=0.01 %", "loading=[{to: {travel: 14}}, {to: {force: 0}}]"]
+FINE = ["mesh={}", "ends=clamped", "accuracy=0.02 %", "loading=[{to: {travel: 14}}, {to: {force: 0}}]"]
 
 
 def errors(steps, mesh, section, contact):
@@ -87,7 +87,7 @@ def test_a_finer_run_is_within_the_accuracy_and_can_be_continued(example, tmp_pa
         return found | {"origin": found["origin"]["case"]}  # without the time
 
     whole = solved("whole")
-    assert whole["estimated_force_error_N"] < 1e-4 * whole["force_max_N"]
+    assert whole["estimated_force_error_N"] < 2e-4 * whole["force_max_N"]
     mesh = whole["origin"]["mesh"]
     assert mesh["elements_per_turn"] > 16.0
     assert mesh["section"]["radial"] > 8
