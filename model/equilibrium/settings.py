@@ -71,7 +71,7 @@ class StepControl:
     Attributes:
         smallest: size below which the path is abandoned.
         patience: evaluations after which the program has stalled unless they have brought a thousandth of the phase, or
-            a regular step; a snap has as many of its own.
+            a regular step.
         automatic: number of regular steps in an automatic phase; it starts with one of these.
         easy: number of iterations up to which the next automatic step becomes longer.
         hard: number of iterations from which the next automatic step becomes shorter.
@@ -89,8 +89,7 @@ class StepControl:
             change is taken for a kink of the path.
         regrowth: factor by which an equal step that was cut grows again, up to size 1.
         probe: travel over which the initial rate is measured.
-        unstable_cuts: number of times that a step ending in an unstable state is cut before its path is left; one that
-            finds none, as short as so many cuts make a regular one, is sought against a drag.
+        unstable_cuts: number of times that a step ending in an unstable state is cut before its path is left.
         branch_amplitude: maximum displacement in the weakest mode with which a path is left.
         snap_advance: distance that a snapping spring moves in its first step against the drag.
         snap_steps: maximum number of these steps until the spring comes to rest.

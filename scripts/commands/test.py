@@ -18,6 +18,7 @@ SOLVES = [
     "commands",
     "examples",
     "install",
+    "material/test_fit.py",
     "meshes/test_solved_springs.py",
     "solid",
     "spring",

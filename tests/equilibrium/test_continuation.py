@@ -103,7 +103,7 @@ IMPATIENT = f"solver.control.steps.patience={PATIENCE}"
 
 
 def test_a_program_that_no_longer_advances_ends_soon_with_its_cause(make):
-    """Within `patience` evaluations, as many of a snap, and one solve; what was reached is kept, the cause is named."""
+    """Within `patience` evaluations and one solve; what was reached is kept, and how the spring gives way is named."""
     analysis = make("[{to: {travel: 15}}]", IMPATIENT, "solver.control.steps.smallest=1e-9")
     solves, solve, spent = listened(analysis), analysis.newton.solve, []
 
@@ -116,7 +116,7 @@ def test_a_program_that_no_longer_advances_ends_soon_with_its_cause(make):
     tried = f"{PATIENCE} states were tried and led less than a thousandth of the way; no reason; "
     with pytest.raises(SolveError, match=tried + r"the .* gives? way .*; a height of [0-9.]+ mm can be reached$"):
         analysis.run()
-    assert PATIENCE < sum(spent) + len(spent) <= 2 * PATIENCE + 2 * max(solve.evaluations for solve in solves)
+    assert PATIENCE < sum(spent) + len(spent) <= PATIENCE + 2 * max(solve.evaluations for solve in solves)
     assert len(analysis.result.steps) == 3
     assert analysis.result.snapshots[-1].height == analysis.result.steps[-1].seat_height_mm
 
@@ -126,16 +126,6 @@ def test_a_program_that_advances_slowly_goes_on(make):
     analysis = make("[{to: block, steps: 20}]", IMPATIENT)
     assert analysis.run().complete
     assert analysis.system.evaluations > PATIENCE
-
-
-def test_a_step_that_is_stuck_is_sought_against_a_drag_once_and_at_the_shortest(make):
-    """As short as eight cuts make a regular one; not where its state was refused, and never by the number of cuts."""
-    continuation = make("[{to: {travel: 2}}]").continuation
-    failed, refused = Outcome(False, "no reason", 1.0), Outcome(False, "too deep", 1.0, refused=True)
-    sizes = 0.5, 0.5**7, 0.5**8, 0.5**9, 0.5**10
-    assert [continuation._ends_here(size, failed) for size in sizes] == [False, False, True, False, True]
-    continuation._dragged = False
-    assert not continuation._ends_here(0.5**8, refused)
 
 
 def test_coils_that_sink_in_too_far_are_pressed_apart(make):

@@ -13,7 +13,7 @@ and when it is below λ > 0 the state is solved for without drag.
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from petsc4py import PETSc
@@ -45,7 +45,6 @@ class Descent:
         moved: length of the last step, mm.
         speed, before: drag times length of the last step and of the one before it, N.
         failed: number of consecutive failed steps.
-        start: of the next step.
     """
 
     drag: float
@@ -59,7 +58,6 @@ class Descent:
     speed: float = 0.0
     before: float = 0.0
     failed: int = 0
-    start: Start = field(default_factory=Start)
 
     @property
     def is_stuck(self) -> bool:
@@ -91,21 +89,17 @@ class Snap:
         self.stability, self.control, self.solve = stability, control, solve
         self.system = stability.system
 
-    def go(self, load: Callable[[], Load], unstable: PETSc.Vec | None, guess: PETSc.Vec | None = None) -> Outcome:
+    def go(self, load: Callable[[], Load], unstable: PETSc.Vec | None) -> Outcome:
         """Follow the path until a stable state is found; if none is found, the committed steps are kept.
 
         Args:
             load: the load from the last equilibrium, whichever that is.
             unstable: increments to an unstable equilibrium under this load; None to start from the last equilibrium.
-            guess: increments that the drag of the first step leaves free, so that what the load prescribes at the heads
-                does not deform the wire beside them alone; None: none.
 
         Returns:
             Outcome of the last solve; its `released` is the energy dissipated by the drag, N mm.
         """
         descent = self._begin(load(), unstable)
-        if unstable is None and guess is not None:
-            descent.origin, descent.start = guess.getArray(readonly=True).copy(), Start(guess)
         outcome = Outcome(False, "the spring does not come to rest", np.inf)
         for _step in range(self.control.snap_steps):
             outcome = self._descend(load(), descent)
@@ -139,7 +133,7 @@ class Snap:
     def _descend(self, load: Load, descent: Descent) -> Outcome:
         """One step against the drag, which is committed; if it fails or goes too far, the drag is increased instead."""
         drag = Drag(descent.drag * descent.weights, descent.origin)
-        outcome = self.solve(load.resisted(drag), descent.start)
+        outcome = self.solve(load.resisted(drag), Start())
         moved = self.stability.greatest_displacement(self.system.increments)
         if not outcome.converged or moved > FASTER * descent.advance:
             self.system.restore()
@@ -152,7 +146,6 @@ class Snap:
         descent.drag_force, descent.origin = force, np.zeros_like(way)
         descent.before, descent.speed = descent.speed, descent.drag * moved
         descent.moved, descent.failed = moved, 0
-        descent.start = Start()
         descent.weakest = weakest = self.stability.weakest(load)
         self.system.commit()
         log.info(

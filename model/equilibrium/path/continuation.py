@@ -67,7 +67,6 @@ class Continuation:
         self.guess = Guess(self.system, self.control.bend)
         self._spent: list[Outcome] = []  # all solves of the step in progress
         self._unstable: PETSc.Vec | None = None  # increments of an attempt that ended unstable
-        self._dragged = False  # whether the step in progress was sought against a drag
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
@@ -194,21 +193,16 @@ class Continuation:
         return replace(outcome, converged=False, reason=reason)
 
     def _ends_here(self, size: float, outcome: Outcome) -> bool:
-        """Whether a failed step is so short that its path ends, or must be left because it is unstable or stuck.
+        """Whether a failed step is so short that its path ends, or must be left because it becomes unstable.
 
         The last stable state is near once the step is as short as `unstable_cuts` make a regular one, however many of
-        these were for steps before. One that is so short without an equilibrium is stuck: each further cut costs as
-        much as a motion against a drag, which finds a state also where the path goes on. It is tried once a step, and
-        again at the shortest.
+        these were for steps before.
         """
-        control, stuck = self.control, self._unstable is None
-        if self.stability is None or (stuck and outcome.refused):
-            return False
+        control = self.control
         shortest = control.cut * size < control.smallest
+        if self.stability is None or (self._unstable is None and (not shortest or outcome.refused)):
+            return False
         near = size <= (1.0 + ON_MARK) * control.cut**control.unstable_cuts
-        if stuck:
-            near, self._dragged = near and not self._dragged, self._dragged or near
-            return shortest or near
         return shortest or near or self.steps.position.cuts >= control.unstable_cuts
 
     def _snap(self, path: Path, place: float) -> Outcome:
@@ -222,11 +216,8 @@ class Continuation:
         """
         assert self.stability is not None
         there, load = self._unstable, partial(path.load, place)
-        self.steps.begin_snap(self.system.evaluations)
-        before, position, guess = self.system.state.copy(), self.steps.position, None
-        if position.before:
-            guess = self.guess.along_path(load(), position, path.step_length(position.done, place - position.done))
-        outcome = Snap(self.stability, self.control, partial(self._snap_step, path)).go(load, there, guess)
+        before = self.system.state.copy()
+        outcome = Snap(self.stability, self.control, partial(self._snap_step, path)).go(load, there)
         if outcome.converged:
             free = f"set {outcome.released:.3g} N mm free" if outcome.released else "set no energy free: its path forks"
             log.info("step %d: the spring left its path and %s", self.number + 1, free)
@@ -274,19 +265,14 @@ class Continuation:
                 state is that of the last converged step.
         """
         self._spent.clear()
-        self._unstable, self._dragged, unstable_at = None, False, 0.0
+        self._unstable, unstable_at = None, 0.0
         outcome: Outcome | None = None
         while True:
-            begun = self.steps.position
-            size = self.steps.size(path)
             if self.steps.stalls(path, self.system.evaluations):
-                if self.stability is not None and path.moment is None and not self._dragged:
-                    self._unstable, self._dragged = None, True  # from the last equilibrium
-                    outcome = self._snap(path, begun.done + size)
-                    if outcome.converged:
-                        return self._accepted(path, outcome, size), begun.cuts
                 tried = f"{self.control.patience} states were tried and led less than a thousandth of the way"
                 raise path.failure(tried, "" if outcome is None else outcome.reason, self.cause())
+            begun = self.steps.position
+            size = self.steps.size(path)
             load, length = path.load(begun.done + size), path.step_length(begun.done, size)
             if path.moment is not None:
                 self.system.pass_time(path.moment(begun.done + 0.5 * size), path.moment(begun.done + size))
@@ -301,13 +287,10 @@ class Continuation:
                     outcome, size = beside, there
                 self._unstable = None  # once a step
             if outcome.converged:
-                return self._accepted(path, outcome, size), begun.cuts
+                self.number += 1
+                self.steps.accept(path, outcome, size)
+                return self._charged(outcome), begun.cuts
             self._cut(path, outcome, size)
-
-    def _accepted(self, path: Path, outcome: Outcome, size: float) -> Outcome:
-        self.number += 1
-        self.steps.accept(path, outcome, size)
-        return self._charged(outcome)
 
     def _cut(self, path: Path, outcome: Outcome, size: float) -> None:
         if self.steps.cut(outcome, size):

@@ -62,13 +62,13 @@ class Guess:
         extrapolation does not: that with less force out of balance is taken.
         """
         if self.too_far is None:
-            return self.along_path(load, position, size) if position.last else self._as_probed(load)
+            return self._along_path(load, position, size) if position.last else self._as_probed(load)
         guess, length = self.too_far
         shorter = guess.copy()
         shorter.scale(size / length)
         if not position.before:
             return shorter
-        along = self.along_path(load, position, size)
+        along = self._along_path(load, position, size)
         return min(shorter, along, key=lambda start: self._out_of_balance(load, start))
 
     def _as_probed(self, load: Load) -> PETSc.Vec | None:
@@ -83,8 +83,7 @@ class Guess:
         guess.scale(load.multiple_of(probe))
         return guess
 
-    def along_path(self, load: Load, position: Position, size: float) -> PETSc.Vec:
-        """The extrapolation of the last steps, which there are."""
+    def _along_path(self, load: Load, position: Position, size: float) -> PETSc.Vec:
         last, earlier = position.before, position.earlier
         guess = self._rate(self._last.equilibrium, load, 0.5 * (size + last) / last)
         guess.scale(size / last)

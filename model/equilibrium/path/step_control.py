@@ -115,10 +115,6 @@ class StepSizes:
             self._mark = done, evaluations
         return evaluations - self._mark[1] > self.control.patience
 
-    def begin_snap(self, evaluations: int) -> None:
-        """A snap has `patience` evaluations of its own; `evaluations` of all so far."""
-        self._mark = self.position.done, evaluations
-
     def accept(self, path: Path, outcome: Outcome, size: float) -> None:
         """Stand at the end of a step of this size."""
         last = 0.0 if outcome.left_branch else path.step_length(self.position.done, size)
