@@ -79,7 +79,7 @@ def test_the_steps_of_an_automatic_run_give_its_numbers_again(make):
     assert {0.1, 1.0} <= {step.progress for step in cut}
 
 
-@pytest.mark.parametrize(("ends", "smallest"), [("seats", 0.05), ("clamped", 1e-3)])
+@pytest.mark.parametrize(("ends", "smallest"), [("seats", 0.05), ("clamped", 0.01)])
 def test_an_impossible_target_is_given_up_with_all_that_was_reached(make, ends, smallest):
     """Coils that may lie 0.5 µm in each other bear 1300 N only in steps much shorter than these may become."""
     steps = f"solver.control.steps.smallest={smallest}"
