@@ -113,8 +113,8 @@ def test_what_is_wrong_with_a_spring_names_its_file(tmp_path):
         assert str(error.value).startswith(f"{tmp_path}/{place}.yaml: spring")
     with pytest.raises(InputError, match=f"^{tmp_path}/outer.yaml: temperature: "):
         press(read_nest(write(tmp_path, material="creeping", temperature=5.0)))
+    hard = {"contact": {"penetration_limit": 1e-6}, "solver": {"control": {"steps": {"patience": 50}}}}
     with pytest.raises(SolveError, match=r"^outer: no equilibrium beyond "):
-        hard = {"contact": {"penetration_limit": 1e-6}, "solver": {"control": {"steps": {"patience": 50}}}}
         press(read_nest(write(tmp_path, loading=[{"to": "block", "steps": 1}], **hard)))
 
 
