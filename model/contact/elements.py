@@ -6,9 +6,8 @@ import numpy as np
 
 from coilset.model.contact.curve import STENCIL, Curve, point_on_curve, station_weight
 from coilset.model.contact.gauge import gauge
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import COMPILED, njit
 
-COMPILED = {"cache": True, "error_model": "numpy"}
 PAIR = 6 * STENCIL  # displacements of the eight stations of a pair
 FLAT = STENCIL + 1  # levels of a point's stations and of the seat
 Room = tuple[np.ndarray, ...]  # a Contribution's arrays, in the order of its attributes

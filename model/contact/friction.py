@@ -33,12 +33,12 @@ import numpy as np
 from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory, TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import STENCIL, curve_weights
-from coilset.model.contact.elements import COMPILED, one_sided_at
+from coilset.model.contact.elements import one_sided_at
 from coilset.model.contact.hold import Guide
 from coilset.model.contact.seat import Seat
 from coilset.model.rotations.triples import Triple, axis, back, cross, dot, plus, scaled, times, triple
 from coilset.model.rotations.vectors import chart_derivatives, rotation_derivatives
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import COMPILED, njit
 
 NODAL = 3 * STENCIL  # displacements, or rotations, of the four stations that a point depends on
 Pair = tuple[np.ndarray, np.ndarray]

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import COMPILED, njit
 
-COMPILED = {"cache": True, "error_model": "numpy"}
 Triple = tuple[float, float, float]
 
 

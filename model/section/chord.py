@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from coilset.model.base.kernel import KERNEL
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 
 
 @njit(**KERNEL)

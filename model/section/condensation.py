@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
-from coilset.model.base.kernel import KERNEL
 from coilset.model.material.point.choice import solid_point
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 
 # A change of the warping, a strain, that ends the iteration. Its effect on the resultants is added to them, so that
 # their error is its square over the strain at which the law's slope changes, some 1e-3.

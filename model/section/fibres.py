@@ -7,10 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.base.kernel import KERNEL
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.ground import ground_sections, rim_rule

@@ -15,9 +15,8 @@ import math
 
 import numpy as np
 
-from coilset.model.base.kernel import KERNEL
 from coilset.model.material.point.choice import rod_points
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 
 FIBRES = 5  # rows of `fibres`: y, z, u, v and area
 SUMS = KERNEL | {"fastmath": {"contract", "reassoc", "nsz"}, "forceinline": True}

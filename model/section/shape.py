@@ -20,8 +20,7 @@ and the virtual work is ∫ σ : δε g dA. Of a straight wire, κ = 0, this is 
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 SHAPE = 5  # rows of `shape`: g, a22, a23, a32, a33
 WARPING = 3.0 / 7.0  # of the transverse shear strain

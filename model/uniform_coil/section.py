@@ -8,9 +8,8 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE
 from coilset.model.material.point.choice import rod_point
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, njit
 from coilset.model.section.shape import shear_by_force
 
 RADIUS, INCLINATION, RISE, TURN = range(4)  # the coordinates q = (R̄, ϑ, h̄, λ)

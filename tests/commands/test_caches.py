@@ -42,7 +42,7 @@ def sources(monkeypatch, tmp_path):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept" / "version"))
 
     def write(path, text):
-        kernels.imported.cache_clear()
+        kernels.source.cache_clear()
         kernels.digest.cache_clear()
         file = tmp_path / path
         file.parent.mkdir(parents=True, exist_ok=True)

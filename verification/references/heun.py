@@ -16,7 +16,6 @@ from functools import partial
 
 import numpy as np
 
-from coilset.model.base.kernel import KERNEL
 from coilset.model.material import programs
 from coilset.model.material.law.functions import (
     CHANGE,
@@ -36,7 +35,7 @@ from coilset.model.material.point.local import TOO_HOT, yield_crossing
 from coilset.model.material.point.points import refuse
 from coilset.model.material.point.points import update as update_points
 from coilset.model.material.programs import History, Program
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 
 MAX_SUBSTEPS = 20000
 MAX_CUTS = 8

@@ -17,8 +17,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 # The array of creep. TIME: the increment of t, or of t^p for time hardening; POWER: p, or 1; FORM: 0 power law, 1 sinh;
 # SPEED, STRESS, EXPONENT: c₀^(1/POWER), σ₀ in N/mm² and N/POWER of φ^(1/POWER); TEMPERATURE: at the increment's end, K.

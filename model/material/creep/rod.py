@@ -17,13 +17,12 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import POWER, creep_strain, crept, passes
 from coilset.model.material.law.functions import elasticity, functions
 from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.increment import GAMMA
 from coilset.model.material.point.rod import Vector, active, inner
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²
 # A stage's end: stress, its equivalent σ and direction d, θ, the Creep of σ, ∂c/∂σ − θ at constant time; iterations,

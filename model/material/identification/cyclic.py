@@ -22,11 +22,10 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
 from coilset.model.base.errors import InputError
-from coilset.model.base.kernel import KERNEL
 from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fit import check_units
 from coilset.model.material.identification.result import Fit, coverage, robust_covariance
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 
 MOST_TERMS = 4
 AXIS = {"tension": 0, "torsion": 1}  # column of the tests' arrays

@@ -13,8 +13,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from coilset.model.base.kernel import INLINE
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, njit
 
 LEAST = -700.0  # smaller arguments are taken for this one, exp(x) = 1e-304; none are greater than 700
 LOG2_E = 1.4426950408889634

@@ -9,9 +9,8 @@ import math
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.exponential import exp
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 # k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b*.
 Functions = tuple[float, float, float, float, float, float]

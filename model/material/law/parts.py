@@ -2,9 +2,8 @@
 
 from collections import namedtuple
 
-from coilset.model.base.kernel import INLINE
 from coilset.model.material.law.functions import HEATING, N_ROWS, ROW_LENGTH, ROWS_START, table_place
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, njit
 
 CREEP_ENTRIES = 9  # of the array of creep
 # What the law's kernels take in the place of the parameter array, where the exponential return map does not suffice:

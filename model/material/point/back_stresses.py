@@ -18,7 +18,6 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import POWER
 from coilset.model.material.law.functions import CHANGE, EXPONENT, HEATING, SPIN, TEMPERATURE, elasticity, functions
 from coilset.model.material.law.parts import Parts, saturation
@@ -26,7 +25,7 @@ from coilset.model.material.point.increment import AHEAD, GAMMA, ROD
 from coilset.model.material.point.overstress import ROOT
 from coilset.model.material.point.rod import Vector, add, inner, scaled
 from coilset.model.material.point.spin import crossing_of_spin
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 # A stage at D: k and its slope in b*, λ, q, n, |n| and its slope in D; f: 1/(1 + (c + Z) λ); slopes of n in q (a) and,
 # with the other sign, in λ (h).

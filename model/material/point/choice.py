@@ -12,7 +12,6 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from coilset.model.base.kernel import KERNEL
 from coilset.model.material.creep.flow import TIME
 from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.functions import SPIN
@@ -21,7 +20,7 @@ from coilset.model.material.point import rod, solid
 from coilset.model.material.point.back_stresses import applies, flow_of_rod
 from coilset.model.material.point.increment import advance
 from coilset.model.material.point.rod_rows import return_map_points
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 
 
 def rod_points(

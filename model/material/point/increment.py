@@ -14,7 +14,6 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import POWER, creep_strain, passes
 from coilset.model.material.law.functions import (
     CHANGE,
@@ -47,7 +46,7 @@ from coilset.model.material.point.stage import (
     inner,
     solve,
 )
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 # What an increment is made of. law: Parts; h: time of creep; reference: ṗ₀ Δt, 0 without overstress; temperature at its
 # start, and its change; heating, work, expansion, deviates: as in `Stage`; fading: see `_fading`; follows: whether the

@@ -51,10 +51,9 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.exponential import decay
 from coilset.model.material.law.functions import Functions, functions
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 MAX_ITERATIONS = 60
 FAILED, TOO_HOT = -1, -2  # instead of a number of iterations; TOO_HOT: heated out of the material's table

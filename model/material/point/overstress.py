@@ -10,8 +10,7 @@ With the plastic strain p of a stage and ρ = ṗ₀ Δt of its time, p = ρ (v 
 
 import math
 
-from coilset.model.base.kernel import KERNEL
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 
 MAX_ITERATIONS = 40
 ROOT = math.sqrt(2.0 / 3.0)

@@ -5,13 +5,12 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.base.kernel import KERNEL
 from coilset.model.material.law.functions import CHANGE
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.choice import advance_points, solid_point
 from coilset.model.material.point.local import TOO_HOT
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 
 
 @njit(**KERNEL)

@@ -9,10 +9,9 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.functions import TEMPERATURE, elasticity, functions
 from coilset.model.material.point.local import Local, Start, solve, yield_crossing
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 Vector = tuple[float, float, float]  # components 11, 12, 13
 # Where the plastic part of an increment starts: elastic fraction β before it, σ = 1/n₀:e there, by which β

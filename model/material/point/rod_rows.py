@@ -9,7 +9,6 @@ converge, are marked and left to `return_map`, point by point, as are temperatur
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.functions import N_ROWS, NODES, ROWS_START, elasticity, hardening, with_deviation
 from coilset.model.material.point.local import (
     Group,
@@ -38,7 +37,7 @@ from coilset.model.material.point.rod import (
     return_map,
     softening,
 )
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 GROUP = 64  # points processed together
 NEWTON = 8  # iterations at most

@@ -10,10 +10,9 @@ The caller works in such a frame, or rotates the point's state by the increment'
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.functions import TEMPERATURE, elasticity, functions
 from coilset.model.material.point.local import Local, Start, Turn, solve, yield_crossing
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23
 Pair = tuple[float, float]

@@ -34,12 +34,11 @@ from typing import Any
 
 import numpy as np
 
-from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import Creep, creep_strain, crept
 from coilset.model.material.law.functions import EXPONENT, functions
 from coilset.model.material.law.parts import saturation
 from coilset.model.material.point.overstress import ROOT, of_work
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 # A stage's data. law: Parts; h: time of creep; reference: ρ, 0 without overstress; temperature, at b = work; heating:
 # of the temperature by b; expansion: of the rod's axial strain by b; deviates: κ ≠ 0.
