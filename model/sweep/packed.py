@@ -1,7 +1,8 @@
 """Inputs and keys of very many cases in little memory: a number takes 8 bytes, a key 25, no Python object."""
 
+from abc import abstractmethod
 from collections.abc import Iterable, Sequence
-from typing import Any, overload
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
@@ -9,9 +10,31 @@ from coilset.model.sweep.keys import KEY_LENGTH
 from coilset.model.sweep.spec import are_numbers
 
 Row = tuple[Any, ...]  # the inputs of a case
+Item = TypeVar("Item", covariant=True)
 
 
-class Rows(Sequence[Row]):
+class MadeWhenRead(Sequence[Item]):
+    """A sequence whose items are made each time they are read; slices are lists of them."""
+
+    @abstractmethod
+    def item(self, at: int) -> Item:
+        """The item at a place from 0 to less than the length."""
+
+    @overload
+    def __getitem__(self, at: int) -> Item: ...
+
+    @overload
+    def __getitem__(self, at: slice) -> list[Item]: ...
+
+    def __getitem__(self, at: int | slice) -> Item | list[Item]:
+        if isinstance(at, slice):
+            return [self.item(k) for k in range(*at.indices(len(self)))]
+        if not -len(self) <= at < len(self):
+            raise IndexError(at)
+        return self.item(int(at) % len(self))
+
+
+class Rows(MadeWhenRead[Row]):
     """Rows of a table, kept by columns.
 
     Args:
@@ -43,24 +66,14 @@ class Rows(Sequence[Row]):
     def __len__(self) -> int:
         return self._length + len(self.added)
 
-    @overload
-    def __getitem__(self, at: int) -> Row: ...
-
-    @overload
-    def __getitem__(self, at: slice) -> list[Row]: ...
-
-    def __getitem__(self, at: int | slice) -> Row | list[Row]:
-        if isinstance(at, slice):
-            return [self[k] for k in range(*at.indices(len(self)))]
-        if not -len(self) <= at < len(self):
-            raise IndexError(at)
-        at = int(at) % len(self)
+    def item(self, at: int) -> Row:
+        """A row."""
         if at >= self._length:
             return self.added[at - self._length]
         return tuple(column[at].item() if isinstance(column, np.ndarray) else column[at] for column in self.columns)
 
 
-class Strings(Sequence[str]):
+class Strings(MadeWhenRead[str]):
     """Keys of cases.
 
     Args:
@@ -79,15 +92,8 @@ class Strings(Sequence[str]):
     def __len__(self) -> int:
         return len(self.array)
 
-    @overload
-    def __getitem__(self, at: int) -> str: ...
-
-    @overload
-    def __getitem__(self, at: slice) -> list[str]: ...
-
-    def __getitem__(self, at: int | slice) -> str | list[str]:
-        if isinstance(at, slice):
-            return [self[k] for k in range(*at.indices(len(self)))]
+    def item(self, at: int) -> str:
+        """A key."""
         key: bytes = self.array[at]
         return key.decode()
 

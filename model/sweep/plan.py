@@ -3,9 +3,9 @@
 import copy
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, overload
+from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
@@ -19,7 +19,7 @@ from coilset.model.results.files.folder import whole
 from coilset.model.sweep.design import rows
 from coilset.model.sweep.engines.pool import Task
 from coilset.model.sweep.keys import Keys, Model, as_rod
-from coilset.model.sweep.packed import Row, Strings
+from coilset.model.sweep.packed import MadeWhenRead, Row, Strings
 from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.shards import WHOLE, Shard
 from coilset.model.sweep.spec import SweepSpec
@@ -181,7 +181,7 @@ class Plan:
         return hashlib.blake2b(made_of.encode() + self.rows.content()).hexdigest()
 
 
-class Tasks(Sequence[Work]):
+class Tasks(MadeWhenRead[Work]):
     """Some of what a plan has to compute.
 
     Args:
@@ -195,15 +195,8 @@ class Tasks(Sequence[Work]):
     def __len__(self) -> int:
         return len(self.numbers)
 
-    @overload
-    def __getitem__(self, at: int) -> Work: ...
-
-    @overload
-    def __getitem__(self, at: slice) -> list[Work]: ...
-
-    def __getitem__(self, at: int | slice) -> Work | list[Work]:
-        if isinstance(at, slice):
-            return [self[k] for k in range(*at.indices(len(self)))]
+    def item(self, at: int) -> Work:
+        """Inputs, key and model."""
         plan = self.plan
         copy, case = divmod(int(self.numbers[at]), len(plan))
         key = plan.keys[case]
