@@ -141,7 +141,7 @@ def force_line(run: Run, number: int) -> np.ndarray | None:
 def caption(run: Run, number: int) -> str:
     """Name, height and force of a snapshot, the force of a pulled spring with its sign; rounding counts as zero. Of a
     torsion spring rotation and torque."""
-    if run.summary.get("turn_max_deg") is not None:
+    if run.is_turned:
         last = np.flatnonzero(run.data["phase"].values == number - 1)
         values = (run.data[name].values for name in ("turn_deg", "torque_Nmm"))
         turn, torque = (float(one[last[-1]]) if len(last) else 0.0 for one in values)

@@ -55,7 +55,7 @@ def loading_stress(run: Run) -> tuple[str, np.ndarray]:
     Torsion springs are bent; hooks are bent and twisted; else the wire is twisted.
     """
     values, components = run.data["surface"].values, tuple(map(str, run.data["component"].values))
-    if run.summary.get("turn_max_deg") is not None:
+    if run.is_turned:
         return "stress along the wire in MPa, red in tension", surface_values.component(values, components, "s11")
     if run.summary.get("tail_stress_max_MPa") is not None:
         return "equivalent (von Mises) stress on the surface in MPa", surface_values.equivalent(values, components)

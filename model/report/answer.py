@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from coilset.model.figures.panels.panel import with_unit
-from coilset.model.results.files.opened import Run
+from coilset.model.results.files.opened import Run, is_turned
 from coilset.model.results.records.labels import largest_errors, within
 
 
@@ -73,11 +73,6 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         *([] if is_pulled(s) else [Number("block height", with_unit(s["block_height_mm"], "mm", 2))]),
     ]
-
-
-def is_turned(s: Mapping[str, Any]) -> bool:
-    """Whether a spring is one of torsion, of whose axial force nothing is said; of summary.json."""
-    return s.get("turn_max_deg") is not None
 
 
 def is_pulled(s: Mapping[str, Any]) -> bool:

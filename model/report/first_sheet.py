@@ -14,9 +14,9 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
 from coilset.model.figures.panels.panel import with_unit
-from coilset.model.report.answer import answer, is_pulled, is_turned, release_lengths
+from coilset.model.report.answer import answer, is_pulled, release_lengths
 from coilset.model.report.verdict import Check, checks, verdict
-from coilset.model.results.files.opened import Run
+from coilset.model.results.files.opened import Run, is_turned
 from coilset.model.results.records.labels import plain
 from coilset.model.standards.cylinder import Cylinder
 

@@ -17,7 +17,7 @@ from coilset.model.figures.panels.panel import Panel
 from coilset.model.figures.panels.seats import active_turns, contact, contact_length, eccentricity, force_centre
 from coilset.model.figures.panels.section_map import normal_map, shear_map
 from coilset.model.figures.panels.spring_view import spring_view
-from coilset.model.report.answer import WORKING_HEADS, answer, is_turned, subtitle, working_rows
+from coilset.model.report.answer import WORKING_HEADS, answer, subtitle, working_rows
 from coilset.model.report.first_sheet import first_sheet
 from coilset.model.report.maker_sheet import maker_sheet
 from coilset.model.report.render import write_page
@@ -47,7 +47,7 @@ def write_report(run: Run) -> Path:
         InputError: if plotly is missing. CoilsetError: if the file cannot be written.
     """
     chapters = [(title, [panel for draw in figures if (panel := draw(run)) is not None]) for title, figures in CHAPTERS]
-    if is_turned(run.summary):
+    if run.is_turned:
         chapters[0] = "Torque and rotation", chapters[0][1]
     found, (case, files) = answer(run.summary), complete(run)
     return write_page(

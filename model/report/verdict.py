@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from coilset.model.results.files.opened import is_turned
+
 REMARKS = {"elastic warping", "estimate", "earlier name", "presetting", "measured axis"}
 """Warnings that are no failed check."""
 LOAD, FORMULAS, WIRE = "load program", "gaps between the coils", "permissible stress"
@@ -40,7 +42,7 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
     messages: dict[str, str] = {}
     for one in summary["warnings"]:
         messages.setdefault(one["name"], one["message"])
-    turned, pulled = summary.get("turn_max_deg") is not None, summary.get("force_max_N", 0.0) < 0.0
+    turned, pulled = is_turned(summary), summary.get("force_max_N", 0.0) < 0.0
     cylinder = "" if has_formulas else "EN 13906-1 applies to cylinders of constant wire only"
     cylinder = "EN 13906-1 applies to springs that are compressed only" if turned or pulled else cylinder
     unknown = "errors of torque and rotation are not estimated" if turned else ""

@@ -14,7 +14,7 @@ SHOWN = {"Mt": "torque Mt", "M2": "bending moment M2", "M3": "bending moment M3"
 def stress_along_wire(run: Run) -> Panel:
     """Shear on the surface over the turns at all snapshots, inside and outside of the coil; of a torsion spring the
     stress along the wire."""
-    turned = run.summary.get("turn_max_deg") is not None
+    turned = run.is_turned
     turns, shear, traces = section_turns(run).ravel(), loading_stress(run)[1] if turned else shear_around(run), []
     for number, name in enumerate(run.snapshots[1:], start=1):
         for side, angle, dash in SIDES:
@@ -46,7 +46,7 @@ def stress_along_wire(run: Run) -> Panel:
 def moments_along_wire(run: Run) -> Panel:
     """Torque and bending moments of the sections over the turns, one snapshot at a time."""
     turns, traces = section_turns(run).ravel(), []
-    bent = run.summary.get("turn_max_deg") is not None
+    bent = run.is_turned
     loading = run.data["resultants"].sel(resultant=["M2", "M3"] if bent else ["Mt"])
     moments = np.linalg.norm(loading.transpose("resultant", ...).values, axis=0)
     moment = moments.reshape(len(run.snapshots), -1).max(axis=1)

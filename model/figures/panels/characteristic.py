@@ -19,7 +19,7 @@ AGAIN = "For the second loading, add a phase to the load program, such as “- t
 
 def characteristic(run: Run) -> Panel:
     """Force over travel, one line per phase, with the initial rate, block and set; torque over rotation in torsion."""
-    if run.summary.get("turn_max_deg") is not None:
+    if run.is_turned:
         return torque_curve(run)
     summary, found = run.summary, phases(run, NAMED)
     traces = []
@@ -164,7 +164,7 @@ def _arrow(set_mm: float) -> list[dict[str, Any]]:
 
 def rate_curve(run: Run) -> Panel | None:
     """Slope of the characteristic over travel, phase by phase; None if no phase has three steps, and in torsion."""
-    if run.summary.get("turn_max_deg") is not None:
+    if run.is_turned:
         return None
     traces, found = [], phases(run, NAMED)
     for phase, travel, force in _curves(run, found):

@@ -36,7 +36,7 @@ def step_error(run: Run) -> Panel | None:
         for label, name in columns.items()
         if name in run.data and np.isfinite(run.data[name].values).any()
     }
-    if not known or run.summary.get("turn_max_deg") is not None:
+    if not known or run.is_turned:
         return None
     last = run.summary["estimated_force_error_N"]
     finding = (

@@ -31,7 +31,7 @@ def significant(run: Run) -> np.ndarray:
 
 
 def _has_force(run: Run) -> bool:
-    turned = run.summary.get("turn_max_deg") is not None
+    turned = run.is_turned
     return "bottom_centre_x_mm" in run.data and bool(run.data["force_N"].values.any()) and not turned
 
 

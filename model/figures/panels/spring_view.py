@@ -56,7 +56,7 @@ def shown_surface(places: np.ndarray, stress: np.ndarray) -> Trace:
 def spring_view(run: Run) -> Panel:
     """One tube per step, all on one scale."""
     turns = float(np.ptp(run.data["turn"].values))
-    turned = run.summary.get("turn_max_deg") is not None
+    turned = run.is_turned
     shown = bent_frames(run) if turned else frames(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
     kind, full = "shear", "shear stress about the wire's axis"
     colours = "Red is sheared as in a compressed spring, blue as in one that is pulled."

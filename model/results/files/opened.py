@@ -1,6 +1,7 @@
 """Reading a results folder: the summary, the tables and the section points, for reports and studies."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -34,9 +35,19 @@ class Run:
         return case
 
     @property
+    def is_turned(self) -> bool:
+        """Whether the spring is one of torsion."""
+        return is_turned(self.summary)
+
+    @property
     def snapshots(self) -> list[str]:
         """Names of the snapshots: the start, and the end of each phase."""
         return [str(name) for name in self.data["snapshot"].values]
+
+
+def is_turned(summary: Mapping[str, Any]) -> bool:
+    """Whether a spring is one of torsion, of whose axial force nothing is said; of summary.json."""
+    return summary.get("turn_max_deg") is not None
 
 
 def open_run(folder: str | Path) -> Run:
