@@ -17,6 +17,7 @@ if TYPE_CHECKING:  # the command asks for the numbers below before MPI is starte
 
 INTERRUPTED = 128 + signal.SIGINT  # exit code
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)  # SIGUSR1: how mpirun passes them on, see scripts/ranks.py
+STOPPED = "COILSET_STOPPED"  # variable with the file by which ranks learn of a signal that came before them
 ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
 
 

@@ -2,8 +2,9 @@
 
 This process remains the parent of mpirun. Open MPI's mpirun ends the ranks on SIGINT and SIGTERM, but passes SIGUSR1 on
 to them. Signals are therefore converted to SIGUSR1, on which a solve ends after its step and keeps its results, as on
-one rank. A reader that closes our output (`| head`) counts as a signal too. Messages of mpirun about ranks that ended
-with one of our exit codes are suppressed, because the ranks have reported the reason in one line.
+one rank. mpirun drops a signal that comes before it has started the ranks, so a file is left for them as well. A reader
+that closes our output (`| head`) counts as a signal too. Messages of mpirun about ranks that ended with one of our exit
+codes are suppressed, because the ranks have reported the reason in one line.
 """
 
 import contextlib
@@ -13,11 +14,12 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import IO, Protocol
 
 from coilset.model.base.errors import InputError
 from coilset.model.runtime.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
-from coilset.scripts.interrupt import INTERRUPTED
+from coilset.scripts.interrupt import INTERRUPTED, STOPPED
 
 PARALLEL = ("solve", "solid", "sweep", "python")
 RANKS_A_CORE = 4
@@ -48,11 +50,13 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
     """Run `coilset ARGUMENTS` on some ranks; returns the exit code of the first that failed."""
     with folder_of_mpirun() as folder:
         command = [*mpirun(ranks), sys.executable, "-m", "coilset.scripts", *arguments]
-        return _run(command, mpi_environment() | folder | {"COILSET_RANKS": str(ranks)})
+        stopped = Path(*folder.values()) / "stopped"
+        environment = mpi_environment() | folder | {"COILSET_RANKS": str(ranks), STOPPED: str(stopped)}
+        return _run(command, environment, stopped)
 
 
-def _run(command: list[str], environment: dict[str, str]) -> int:
-    """Run mpirun, pass on its output and incoming signals; returns its exit code."""
+def _run(command: list[str], environment: dict[str, str], stopped: Path) -> int:
+    """Run mpirun, pass on its output and incoming signals, of which the file is left; returns its exit code."""
     process = subprocess.Popen(
         command,
         stdin=subprocess.DEVNULL,
@@ -67,6 +71,7 @@ def _run(command: list[str], environment: dict[str, str]) -> int:
 
     def stop(code: int) -> None:
         stops.append(code)
+        stopped.touch()
         with contextlib.suppress(ProcessLookupError):
             process.send_signal(signal.SIGUSR1)
 

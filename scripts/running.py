@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from coilset.model.base.errors import CoilsetError, InputError, printable
 from coilset.model.runtime.processes import first_rank
-from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL, Output, output_closed
+from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL, STOPPED, Output, output_closed
 from coilset.scripts.main import app
 from coilset.scripts.startup import typer
 
@@ -62,9 +62,9 @@ def run() -> None:
     sys.stdout = Output(sys.stdout)
     # PETSc would treat a closed pipe, which Output handles, as a crash.
     os.environ["PETSC_OPTIONS"] = f"{os.environ.get('PETSC_OPTIONS', '')} -no_signal_handler"
-    _listen()
     status = 1
     try:
+        _listen()
         _refuse_unreadable(sys.argv[1:])
         status = app(prog_name="coilset", standalone_mode=False) or 0
     except CoilsetError as error:
@@ -136,6 +136,8 @@ def _listen() -> None:
 
         end_with_parent()
         signal.signal(signal.SIGUSR1, interrupt)
+        if os.path.exists(os.environ.get(STOPPED, "")):  # the signal came before this process
+            raise KeyboardInterrupt
 
 
 def _cannot_pass_on(frame: FrameType | None) -> bool:

@@ -167,7 +167,7 @@ def test_stopped_in_an_environment_without_a_root(start, example, ranks):
 
 @pytest.mark.parametrize(("ranks", "seconds"), [(1, 0.05), (1, 0.5), (2, 0.2), (2, 1.0)])
 def test_ctrl_c_while_it_starts(start, example, ranks, seconds):
-    """It is not lost: two thousand steps would take longer than the wait."""
+    """It is not lost: two thousand steps would go on for minutes, and end with 0."""
     running = start(coilset("-n", ranks, "solve", example, "--out", "out", *LONG))
     time.sleep(seconds)
     os.kill(running.process.pid, signal.SIGINT)
@@ -177,6 +177,17 @@ def test_ctrl_c_while_it_starts(start, example, ranks, seconds):
     else:
         assert code in (130, -signal.SIGINT)
     running.until(lambda: not running.alive())
+
+
+def test_a_signal_that_mpirun_drops_reaches_the_ranks_it_starts(start, example, tmp_path):
+    """Before it has ranks it passes none on; the ranks find the file then."""
+    stopped = tmp_path / "stopped"
+    stopped.touch()
+    environment = {"COILSET_STOPPED": str(stopped), "COILSET_RANKS": "1", "COILSET_PYTHON": sys.executable}
+    running = start(coilset("solve", example, "--out", "out", *LONG), **environment)
+    assert running.process.wait(PATIENCE) == 130
+    assert complaints_of(running) == ["coilset: interrupted"]
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(
