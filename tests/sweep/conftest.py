@@ -1,8 +1,11 @@
-"""A small sweep: a clamped spring of one turn, quick to run."""
+"""A small sweep: a clamped spring of one turn, quick to run; and a process that tests share, as each starts slowly."""
 
+import os
 import textwrap
 
 import pytest
+
+from coilset.model.sweep.engines.processes import Workers
 
 CASE = """
     spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 1.5, pitch: 12.0}
@@ -25,3 +28,10 @@ def write_sweep(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture(scope="session")
+def workers():
+    """One process, for as many sweeps as there are."""
+    with Workers(1, dict(os.environ)) as process:
+        yield process

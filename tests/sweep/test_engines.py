@@ -11,7 +11,6 @@ from coilset.api import Study
 from coilset.model.base.errors import InputError
 from coilset.model.sweep import dataset, parquet
 from coilset.model.sweep.engines.dask import dask_pool
-from coilset.model.sweep.engines.processes import Workers
 from coilset.model.sweep.journal import Journal, Records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import Limits, finished, missing, run
@@ -26,19 +25,24 @@ UNIFORM = """
 """
 
 
-def solve(plan, folder, shard=WHOLE, pool=None, limits=None):
+@pytest.fixture
+def solve(workers):
     """Run what is missing of a shard; returns the records in their order."""
-    records = []
-    folder.mkdir(exist_ok=True)
-    journal = Journal(folder / shard.journal, locked=False)
-    todo = missing(plan, finished(folder, retry=False), shard)
-    if pool is not None:
-        run(plan, todo, pool, journal, records.append, limits)
-    else:
-        with Workers(1, dict(os.environ)) as workers, workers.pool(folder / "log") as own:
-            run(plan, todo, own, journal, records.append, limits)
-    journal.close()
-    return records
+
+    def solve(plan, folder, shard=WHOLE, pool=None, limits=None):
+        records = []
+        folder.mkdir(exist_ok=True)
+        journal = Journal(folder / shard.journal, locked=False)
+        todo = missing(plan, finished(folder, retry=False), shard)
+        if pool is not None:
+            run(plan, todo, pool, journal, records.append, limits)
+        else:
+            with workers.pool(folder / "log") as own:
+                run(plan, todo, own, journal, records.append, limits)
+        journal.close()
+        return records
+
+    return solve
 
 
 @pytest.fixture
@@ -50,7 +54,7 @@ def summaries(plan, folder):
     return {one["key"]: one["summary"] for one in Records(folder, (key for _, key, _ in plan.tasks()))}
 
 
-def test_shards_together_are_the_whole_and_none_runs_twice(plan, tmp_path):
+def test_shards_together_are_the_whole_and_none_runs_twice(plan, tmp_path, solve):
     whole, shared = tmp_path / "whole", tmp_path / "shared"
     assert {one["status"] for one in solve(plan, whole)} == {"done"}
     shards = [(Plan(plan.path, shard=shard), shard) for shard in (Shard(1, 3), Shard(2, 3), Shard(3, 3))]
@@ -96,14 +100,14 @@ def test_durations():
         duration("3h", "--until")
 
 
-def test_a_budget_ends_a_sweep_and_it_goes_on(plan, tmp_path):
+def test_a_budget_ends_a_sweep_and_it_goes_on(plan, tmp_path, solve):
     first = solve(plan, tmp_path / "out", limits=Limits(budget=1e-9))
     assert 1 <= len(first) < 10
     rest = solve(plan, tmp_path / "out")
     assert len(first) + len(rest) == 10
 
 
-def test_parquet_has_every_record_with_units(plan, tmp_path):
+def test_parquet_has_every_record_with_units(plan, tmp_path, solve):
     pq = pytest.importorskip("pyarrow.parquet")
     folder = tmp_path / "out"
     solve(plan, folder)
@@ -124,7 +128,7 @@ def test_parquet_has_every_record_with_units(plan, tmp_path):
     assert np.isnan(data.rod_set_mm.values[2:]).all()
 
 
-def test_a_large_sweep_is_shown_by_some_of_its_cases(plan, tmp_path):
+def test_a_large_sweep_is_shown_by_some_of_its_cases(plan, tmp_path, solve):
     folder = tmp_path / "out"
     solve(plan, folder)
     some, every = dataset.collect(plan, folder, most=4), dataset.collect(plan, folder)
@@ -133,7 +137,7 @@ def test_a_large_sweep_is_shown_by_some_of_its_cases(plan, tmp_path):
     np.testing.assert_array_equal(some.set_mm.values, every.set_mm.values[::2])
 
 
-def test_dask_finds_what_processes_find(plan, tmp_path):
+def test_dask_finds_what_processes_find(plan, tmp_path, solve):
     pytest.importorskip("distributed")
     solve(plan, tmp_path / "processes")
     with dask_pool(None, 2) as pool:

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from mpi4py import MPI
+from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
@@ -31,6 +32,7 @@ from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import finished, missing, run
 from coilset.model.sweep.spec import RESPONSES
+from coilset.scripts.main import app
 from coilset.scripts.terminal.log import only_run
 
 THREE = """
@@ -40,19 +42,20 @@ THREE = """
 """
 
 
-def sweep(plan, folder, jobs=1, retry=False):
+@pytest.fixture
+def sweep(workers):
     """Run what is missing; returns the keys that were run."""
-    ran, path = [], folder / "journal.jsonl"
-    with (
-        Workers(jobs, dict(os.environ)) as workers,
-        closing(Journal(path)) as journal,
-        workers.pool(folder / "log") as pool,
-    ):
-        run(plan, missing(plan, finished(folder, retry)), pool, journal, lambda record: ran.append(record["key"]))
-    return ran
+
+    def sweep(plan, folder, retry=False, workers=workers):
+        ran = []
+        with closing(Journal(folder / "journal.jsonl")) as journal, workers.pool(folder / "log") as pool:
+            run(plan, missing(plan, finished(folder, retry)), pool, journal, lambda record: ran.append(record["key"]))
+        return ran
+
+    return sweep
 
 
-def test_cases_are_those_of_single_runs_and_a_wrong_spring_stops_nothing(write_sweep, tmp_path):
+def test_cases_are_those_of_single_runs_and_a_wrong_spring_stops_nothing(write_sweep, tmp_path, sweep):
     plan = Plan(write_sweep(THREE))
     assert len(sweep(plan, tmp_path)) == 3
     data = dataset.collect(plan, tmp_path)
@@ -72,7 +75,7 @@ def test_cases_are_those_of_single_runs_and_a_wrong_spring_stops_nothing(write_s
     assert data.set_mm.isnull().values.tolist() == [False, False, True]
 
 
-def test_resume_runs_only_what_is_missing_and_retry_what_failed(write_sweep, tmp_path):
+def test_resume_runs_only_what_is_missing_and_retry_what_failed(write_sweep, tmp_path, sweep):
     plan = Plan(write_sweep(THREE))
     sweep(plan, tmp_path)
     more = Plan(write_sweep(THREE.replace("count: 3", "count: 5")))
@@ -82,7 +85,7 @@ def test_resume_runs_only_what_is_missing_and_retry_what_failed(write_sweep, tmp
     assert sweep(changed, tmp_path) == list(changed.keys)
 
 
-def test_process_that_dies_is_the_reason_of_its_case_only(write_sweep, tmp_path, monkeypatch):
+def test_process_that_dies_is_the_reason_of_its_case_only(write_sweep, tmp_path, monkeypatch, sweep):
     """A stand-in worker that kills itself at 5 mm wire and answers otherwise."""
     stub = tmp_path / "stub.py"
     stub.write_text(
@@ -96,7 +99,8 @@ def test_process_that_dies_is_the_reason_of_its_case_only(write_sweep, tmp_path,
     )
     monkeypatch.setattr(processes, "WORKER", [sys.executable, str(stub)])
     plan = Plan(write_sweep(THREE))
-    sweep(plan, tmp_path)
+    with Workers(1, dict(os.environ)) as stand_in:
+        sweep(plan, tmp_path, workers=stand_in)
     data = dataset.collect(plan, tmp_path)
     assert data.status.values.tolist() == ["done", "failed", "done"]
     assert data.reason.values[1] == "the process of this case ended with signal 11"
@@ -116,6 +120,13 @@ def test_time_limit_gives_a_case_up(write_sweep, monkeypatch):
 
 def command(path, out, *more):
     return [sys.executable, "-m", "coilset.scripts", "sweep", str(path), "--out", str(out), "--no-pictures", *more]
+
+
+def refusal(*arguments):
+    """What a sweep says that is refused, in this process."""
+    problem = CliRunner().invoke(app, command(*arguments)[3:]).exception
+    assert isinstance(problem, InputError)
+    return str(problem)
 
 
 def wait_until(true, seconds=240.0):  # a busy machine takes long to start Python
@@ -159,8 +170,8 @@ def test_kill_and_resume_lose_nothing_and_repeat_nothing(write_sweep, tmp_path):
     before = journal.read_bytes()
     kept = [record["key"] for record in read_records(journal)]
     assert 3 <= len(kept) < 12
-    assert "holds a sweep" in subprocess.run(command(path, out), capture_output=True, text=True, check=False).stderr
-    subprocess.run(command(path, out, "--resume"), check=True, stdout=subprocess.DEVNULL)
+    assert "holds a sweep" in refusal(path, out)
+    subprocess.run(command(path, out, "--resume", "--jobs", "1"), check=True, stdout=subprocess.DEVNULL)
     keys = Counter(record["key"] for record in read_records(journal))
     assert set(keys) == set(Plan(path).keys)
     assert set(keys.values()) == {1}
@@ -180,7 +191,7 @@ def test_two_allocations_on_one_plan_and_one_is_killed(write_sweep, tmp_path):
     leader.wait()
     wait_until(lambda: all(gone(pid) for pid in workers))
     assert 2 <= len(list(read_records(journal))) < 12
-    subprocess.run(command(path, out, *shard), check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(command(path, out, *shard, "--jobs", "1"), check=True, stdout=subprocess.DEVNULL)
     assert other.wait(240) == 0
     keys = [record["key"] for path in out.glob("journal-*.jsonl") for record in read_records(path)]
     assert sorted(keys) == sorted(Plan(path).keys)
@@ -193,9 +204,7 @@ def test_a_sweep_leaves_the_folder_of_one_that_runs(write_sweep, tmp_path, optio
     out.mkdir()
     (out / "journal.jsonl").write_text("of the other one")
     with only_run(out):
-        done = subprocess.run(command(write_sweep(THREE), out, option), capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert "another run is using this folder" in done.stderr
+        assert "another run is using this folder" in refusal(write_sweep(THREE), out, option)
     assert [path.name for path in out.iterdir()] == ["journal.jsonl"]
     assert (out / "journal.jsonl").read_text() == "of the other one"
 
@@ -381,7 +390,8 @@ def test_inputs_have_the_units_of_their_entries(write_sweep, tmp_path):
 
 
 def test_a_sweep_with_failed_cases_says_so_and_ends_with_3(write_sweep, tmp_path):
-    done = subprocess.run(command(write_sweep(THREE), tmp_path / "out"), capture_output=True, text=True, check=False)
+    three = command(write_sweep(THREE), tmp_path / "out", "--jobs", "1")
+    done = subprocess.run(three, capture_output=True, text=True, check=False)
     assert done.returncode == 3
     assert done.stderr.startswith("coilset: 1 case(s) failed;")
     assert "2 done, 1 failed" in done.stdout

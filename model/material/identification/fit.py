@@ -29,6 +29,7 @@ from coilset.model.material.identification.result import Fit, Minimum, result
 
 STEP = 1e-4  # of the logarithms of the variables, for derivatives
 LOADED = 0.1  # of the maximum stress: readings below it may be of a machine that settles
+BENDS = 4  # starts with different transition points that are followed to their minima: those that fit best
 SOFTEST = 0.03  # of the elastic modulus, at the first reading above that; strain in per cent gives 0.01
 
 
@@ -67,7 +68,8 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
     values, _ = _minima(model, starts, names, proportional)[0]
     starts = [values | {"a": 10.0**n} for n in range(-7, 0)]
     values, _ = _minima(model, _closest(model, starts, kinds["combined"], 1), NORMALITY, kinds["combined"])[0]
-    minima = _minima(model, bend_starts(model, values, proportional, reach), model.names, tests)
+    starts = _closest(model, bend_starts(model, values, proportional, reach), tests, BENDS)
+    minima = _minima(model, starts, model.names, tests)
     return result(model, minima, tests, float(temperature))
 
 

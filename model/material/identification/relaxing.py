@@ -82,14 +82,14 @@ def _fibre(form: str, hardening: str, constants: Constants, stress: float, modul
     edges = np.concatenate([[0.0], PLACES]) ** (1.0 / q)  # w = x^(1/q)
     half, middle = 0.5 * np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
     w = middle[:, None] + half[:, None] * NODES
-    slowness = np.exp(-_log_rate(form, constants, stress * (1.0 - w**q)) / q)
     scale = (stress / modulus) ** (1.0 / q)
-    time = np.cumsum(half * (slowness @ WEIGHTS)) * scale
-    own = np.exp(-_log_rate(form, constants, stress * (1.0 - PLACES)) / q) * scale
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # places never reached are left out below
+        slowness = np.exp(-_log_rate(form, constants, stress * (1.0 - w**q)) / q)
+        time = np.cumsum(half * (slowness @ WEIGHTS)) * scale
+        own = np.exp(-_log_rate(form, constants, stress * (1.0 - PLACES)) / q) * scale
         slope = time / (own * PLACES ** (1.0 / q) / q)  # d log x/d log τ
         log_time = np.log(time)
-    good = np.isfinite(log_time) & np.isfinite(slope) & (np.diff(log_time, prepend=-np.inf) > 1e-12)
+        good = np.isfinite(log_time) & np.isfinite(slope) & (np.diff(log_time, prepend=-np.inf) > 1e-12)
     return _Fibre(log_time[good], np.log(PLACES)[good], slope[good])
 
 
