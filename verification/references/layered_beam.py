@@ -80,12 +80,10 @@ class LayeredCantilever:
         for _ in range(ITERATIONS):
             if not np.abs((strains - self.strains) * [[1.0], [1.0], [self.radius]]).max() < LARGE:
                 break
-            points, found = self._resultants(strains)
-            tangents = np.empty((3, 3, SECTIONS))
-            for k, probe in enumerate(PROBE * np.array([1.0, 1.0, 1.0 / self.radius])):
-                near = strains.copy()
-                near[k] += probe
-                tangents[:, k] = (self._resultants(near)[1] - found) / probe
+            probes = PROBE * np.array([1.0, 1.0, 1.0 / self.radius])
+            points, all_found = self._resultants(np.stack([strains, *(strains + np.diag(probes)[:, :, None])]))
+            found = all_found[0]
+            tangents = np.moveaxis((all_found[1:] - found) / probes[:, None, None], 0, 1)
             wanted, slopes, tip, tip_slope = self._statics(strains, force)
             residual = np.append(((found - wanted) / size).ravel(), (tip - deflection) / self.length)
             if np.abs(residual).max() < PRECISION:
@@ -125,13 +123,20 @@ class LayeredCantilever:
         return wanted, slopes, float(whole @ dy), np.tensordot(whole, y_slope, 1)
 
     def _resultants(self, strains: np.ndarray) -> tuple[Points, np.ndarray]:
-        """The points after an increment from the last equilibrium, and N, Q, M of the sections."""
-        ends = [np.stack([np.log1p(at[0]), *at[1:]]) for at in (self.strains, strains)]
+        """N, Q, M of the sections after increments from the last equilibrium, all at once, and the points of the first.
+
+        Args:
+            strains: shape (increments, 3, sections).
+        """
+        number = len(strains)
+        now, before = (np.concatenate(list(at), axis=1) for at in (strains, [self.strains] * number))
+        ends = [np.stack([np.log1p(at[0]), *at[1:]]) for at in (before, now)]
         axis, angle, bend = (change[:, None] for change in ends[1] - ends[0])
-        points = self._follow(self.points, axis - bend * self.y, angle + 0.0 * self.y)
+        points = self._follow(np.tile(self.points, (1, number, 1)), axis - bend * self.y, angle + 0.0 * self.y)
         normal, shear = points[0] * self.area, points[1] * self.area
-        force = normal.sum(axis=1) / (1.0 + strains[0])
-        return points, np.stack([force, shear.sum(axis=1), -normal @ self.y])
+        force = normal.sum(axis=1) / (1.0 + now[0])
+        found = np.stack([force, shear.sum(axis=1), -normal @ self.y]).reshape(3, number, SECTIONS)
+        return points[:, :SECTIONS], np.moveaxis(found, 1, 0)
 
     def _follow(self, points: Points, stretch: np.ndarray, shear: np.ndarray) -> Points:
         """The points after increments of the logarithmic strain and of the shear."""

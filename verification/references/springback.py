@@ -48,7 +48,7 @@ class Bar:
 
     def curved(self, curvature: float) -> tuple[float, float, float]:
         """The same with logarithmic strains of fibres as long as λ − θ y, y towards the inside, and no axial force."""
-        nodes, w = np.polynomial.legendre.leggauss(2000)
+        nodes, w = np.polynomial.legendre.leggauss(400)
         y = self.radius * np.sin(0.5 * np.pi * nodes)
         area = np.pi * w * (self.radius**2 - y * y)
 

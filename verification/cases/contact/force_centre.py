@@ -61,7 +61,16 @@ def press(
     """Analysis of a spring after its program."""
     spring = SPRINGS[ends] if isinstance(ends, str) else ends
     analysis = Analysis(
-        check({"spring": spring, "material": material, "seats": seats or GROOVE, "loading": loading, "mesh": PLANE}),
+        check(
+            {
+                "spring": spring,
+                "material": material,
+                "seats": seats or GROOVE,
+                "loading": loading,
+                "mesh": PLANE,
+                "accuracy": "none",
+            }
+        ),
         MPI.COMM_SELF,
     )
     analysis.run()

@@ -74,6 +74,7 @@ def states() -> dict[str, tuple[Analysis, Snapshot]]:
                 "ends": "clamped",
                 "loading": loading,
                 "mesh": {"elements_per_turn": 8, "section": {"radial": 8, "angular": 16}},
+                "accuracy": "none",
             }
         )
         analysis = Analysis(case, MPI.COMM_SELF)
