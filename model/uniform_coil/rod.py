@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.base.errors import SolveError
+from coilset.model.material.creep.in_time import LawOverTime, law_in_time
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.points import initial_state
 from coilset.model.runtime.kernels import njit
 from coilset.model.section.rules import DiskRule, polar, upper_half
 from coilset.model.uniform_coil.section import RISE, Coil, force_shear, step
@@ -73,7 +73,8 @@ def unloaded(coils: np.ndarray, law: Law, rule: DiskRule, temperature: float | N
     n = len(coils)
     radius, rise = 0.5 * coils[:, 1], coils[:, 2] / (2.0 * np.pi)
     q = np.stack([radius, np.arctan2(rise, radius), rise, np.ones(n)], axis=1)
-    points = np.tile(initial_state(law, len(rule), 3, temperature), (n, 1, 1))
+    row = LawOverTime(law, law.parameters(temperature), temperature).unstressed(3)
+    points = np.tile(row, (n, len(rule), 1))
     return UniformState(coils, q, points, np.zeros(n), np.zeros(n), np.zeros((n, 4)), np.zeros((n, 4, 4)))
 
 
@@ -135,9 +136,70 @@ def press(
         found,
     )
     if lost >= 0:
-        d, D, pitch = state.coils[lost, :3]
-        raise SolveError(f"no equilibrium of the uniform coil of wire {d:g} mm, diameter {D:g} mm, pitch {pitch:g} mm")
+        raise _lost(state.coils[lost])
     return found, state
+
+
+def hold(
+    state: UniformState,
+    law: Law,
+    hours: np.ndarray,
+    rule: DiskRule,
+    free_ends: bool = False,
+    temperature: float | None = None,
+) -> tuple[np.ndarray, UniformState]:
+    """Keep coils at their heights while time passes.
+
+    Args:
+        state: that in which `press` left the coils, with the same rule; it is not modified.
+        law: material that depends on time.
+        hours: since the start of the hold, ascending, shape (steps,).
+        rule, free_ends, temperature: as in `press`.
+
+    Returns:
+        Forces at these times, shape (n, steps), N, and the UniformState at the end.
+
+    Raises:
+        SolveError: if no equilibrium is found for some coil.
+        ValueError: if the material does not depend on time.
+    """
+    in_time, state = law_in_time(law, law.parameters(temperature)), state.copy()
+    if in_time is None:
+        raise ValueError("the material does not depend on time")
+    clock = in_time.clock(0.0, law.reference_temperature if temperature is None else temperature)
+    y, z = np.ascontiguousarray(rule.points.T)
+    found, new = np.empty((len(state.coils), len(hours))), np.empty_like(state.points[0])
+    for k, hour in enumerate(hours):
+        after = in_time.clock(float(hour), float(clock[1]), clock)
+        over, clock = in_time.over(clock, after), after
+        for i, one in enumerate(state.coils):
+            coil, q = _coil(over, y, z, rule.weights, one, False, free_ends, False), state.q[i]
+            good, state.force[i], state.torque[i] = step(
+                coil, q[RISE], True, q, state.points[i], new, state.sections[i], state.tangents[i]
+            )
+            if not good:
+                raise _lost(one)
+        found[:, k] = state.force
+    return found, state
+
+
+def _lost(coil: np.ndarray) -> SolveError:
+    d, D, pitch = coil[:3]
+    return SolveError(f"no equilibrium of the uniform coil of wire {d:g} mm, diameter {D:g} mm, pitch {pitch:g} mm")
+
+
+@njit(cache=True)
+def _coil(
+    p: np.ndarray, y: np.ndarray, z: np.ndarray, w: np.ndarray, one: np.ndarray, by_force: bool, free: bool, plain: bool
+) -> Coil:
+    """One coil and how it is driven."""
+    d, D, pitch, _ = one
+    R, h = 0.5 * D, pitch / (2.0 * math.pi)
+    j, area, bend = math.hypot(R, h), 0.25 * math.pi * d * d * w, 0.0 if plain else R / (R * R + h * h)
+    across, along = np.zeros_like(y), np.ones_like(y)
+    if not plain:
+        across, along = force_shear(0.5 * d, 0.5 * d * y, 0.5 * d * z, bend)
+    return Coil(p, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, across, along, by_force, free)
 
 
 @njit(cache=True)
@@ -162,14 +224,9 @@ def _press(
     """Take all coils through their targets; returns the number of the first one without an equilibrium, or -1."""
     new = np.empty_like(points[0])
     for i in range(len(coils)):
-        d, D, pitch, turns = coils[i]
-        R, h = 0.5 * D, pitch / (2.0 * math.pi)
-        j, area, bend = math.hypot(R, h), 0.25 * math.pi * d * d * w, 0.0 if plain else R / (R * R + h * h)
-        across, along = np.zeros_like(y), np.ones_like(y)
-        if not plain:
-            across, along = force_shear(0.5 * d, 0.5 * d * y, 0.5 * d * z, bend)
-        coil = Coil(p, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, across, along, by_force, free)
-        last = 0.0
+        pitch, turns = coils[i, 2:]
+        coil, last = _coil(p, y, z, w, coils[i], by_force, free, plain), 0.0
+        h = coil.h
         for k in range(targets.shape[1]):
             start, end = force[i], targets[i, k]
             if not by_force:

@@ -9,7 +9,7 @@ from collections import namedtuple
 import numpy as np
 
 from coilset.model.material.point.choice import rod_point
-from coilset.model.runtime.kernels import INLINE, njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 from coilset.model.section.shape import shear_by_force
 
 RADIUS, INCLINATION, RISE, TURN = range(4)  # the coordinates q = (R̄, ϑ, h̄, λ)
@@ -67,7 +67,7 @@ def derivatives(coil: Coil, q: np.ndarray, S: np.ndarray, B: np.ndarray, H: np.n
     H /= j
 
 
-@njit(**INLINE)
+@njit(**KERNEL)
 def integrate(
     coil: Coil,
     E: np.ndarray,
@@ -192,6 +192,7 @@ def step(
                 size = max(size, abs(f[a] * scale[a]))
         if iteration == 0:
             load = abs(f[RISE]) if coil.by_force else np.abs(K[:, RISE] * scale).max() * abs(value - q[RISE])
+            load = max(load, size)  # what time alone brings out of balance
         elif size <= max(PRECISION * load, ROUNDING * np.abs(S).max()):
             q[:], points[:] = trial, new
             return True, force, torque

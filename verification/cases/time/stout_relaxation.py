@@ -6,8 +6,8 @@ let back to half of that travel and held there for 1,000 h: presetting, Bauschin
 same law, with three stresses in the rod's curved section and with six in its warping one, the slice and the solid; each
 takes the same steps, equal ones of log(1 + 10⁵ t/1,000 h) in the hold.
 
-The slice is a coil without ends, so its loss is compared with that of the solid times the ratio of two rods of the same
-section, a clamped turn and one of three turns. Tolerance: 0.5 % of the loss 1 − F/F₀.
+The slice is a coil without ends, so its loss is compared with that of the solid times the ratio of two rods: the
+uniform rod, a coil without ends too, to the clamped turn. Tolerance: 0.5 % of the loss 1 − F/F₀.
 """
 
 from dataclasses import dataclass
@@ -26,18 +26,21 @@ from coilset.model.base.style import STYLE
 from coilset.model.case.case import Case, check
 from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
+from coilset.model.section.rules import polar
 from coilset.model.slice.analysis import ACROSS, INSIDE
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.slice import Coil, Slice
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
 from coilset.model.solid.program import AxialProgram
+from coilset.model.uniform_coil.rod import hold, press
 from coilset.verification.solid_study.pressing import WIRE, PressedSection
 from coilset.verification.study import Study
 
 FAST = False
 INDICES = (4.0, 8.0)
 DOWN, BACK = 12, 4  # steps
+RADIAL, ANGULAR = 12, 24  # points of a rod's section
 HELD = 0.5  # travel at which it is held, over the greatest
 HOURS = 1000.0 / 1e5 * np.expm1(np.linspace(0.0, 1.0, 11)[1:] * np.log1p(1e5))
 CREEP = {"form": "norton_bailey", "strain": 2e-4, "stress": 300.0, "exponent": 6.0, "time_exponent": 0.3}
@@ -69,20 +72,29 @@ def travels(case: PressedSection) -> np.ndarray:
     return case.travel * np.concatenate([down, back])
 
 
-def rod(case: PressedSection, file: str, kind: str, turns: float = 1.0) -> Held:
-    """A spring of some turns between clamped heads."""
+def rod(case: PressedSection, file: str, kind: str) -> Held:
+    """A turn between clamped heads."""
     marks = np.log1p(HOURS / HOURS[-1] * 1e6) / np.log1p(1e6)  # a hold's steps are parts of log(1 + 1e6 t)
     loading: list[dict[str, Any]] = [
-        {"to": {"travel": turns * case.travel}, "steps": DOWN},
-        {"to": {"travel": turns * HELD * case.travel}, "steps": BACK},
+        {"to": {"travel": case.travel}, "steps": DOWN},
+        {"to": {"travel": HELD * case.travel}, "steps": BACK},
         {"hold": {"hours": float(HOURS[-1])}, "steps": [float(mark) for mark in marks]},
     ]
-    spring = {"wire_diameter": WIRE, "mean_diameter": case.mean_diameter, "turns": turns, "pitch": case.pitch}
-    mesh = {"elements_per_turn": 24, "section": {"kind": kind, "radial": 12, "angular": 24}}
+    spring = {"wire_diameter": WIRE, "mean_diameter": case.mean_diameter, "turns": 1.0, "pitch": case.pitch}
+    mesh = {"elements_per_turn": 24, "section": {"kind": kind, "radial": RADIAL, "angular": ANGULAR}}
     entries = {"spring": spring, "material": file, "ends": "clamped", "mesh": mesh, "loading": loading}
     model: Case = check(entries)
     steps = Analysis(model, MPI.COMM_SELF).run().steps
     return Held(np.array([step.force_N for step in steps])[-len(HOURS) - 1 :])
+
+
+def uniform_rod(case: PressedSection, file: str) -> Held:
+    """A coil without ends, by the rod's kinematics."""
+    law, rule = library.load(file), polar(RADIAL, ANGULAR, staggered=False)
+    coil = np.array([WIRE, case.mean_diameter, case.pitch, 1.0])
+    forces, state = press(coil, law, travels(case), rule=rule)
+    relaxed, _ = hold(state, law, HOURS, rule)
+    return Held(np.concatenate([forces[0, -1:], relaxed[0]]))
 
 
 def slice_of(case: PressedSection, file: str) -> Held:
@@ -122,7 +134,7 @@ def run(study: Study) -> None:
             "rod, curved": rod(case, file, "curved").loss,
             "rod, warping": rod(case, file, "warping").loss,
         }
-        ends = found[index]["rod, curved"][-1] / rod(case, file, "curved", 3.0).loss[-1]
+        ends = found[index]["rod, curved"][-1] / uniform_rod(case, file).loss[-1]
         for name, losses in found[index].items():
             exact = found[index]["solid"][-1] / (ends if name == "slice" else 1.0)
             if name != "solid":
