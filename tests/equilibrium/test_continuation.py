@@ -74,7 +74,7 @@ def test_the_steps_of_an_automatic_run_give_its_numbers_again(make):
             [getattr(s, name) for s in other], [getattr(s, name) for s in one], rtol=1e-6, atol=1e-7
         )
     assert np.ptp(np.diff(marks[0])) > 0.01
-    cut = make("[{to: {travel: 15}, steps: [0.1, 1]}]", "solver.options.snes_max_it=4").run().steps
+    cut = make("[{to: {travel: 12}, steps: [0.1, 1]}]", "solver.options.snes_max_it=3").run().steps
     assert sum(step.cuts for step in cut) > 0
     assert {0.1, 1.0} <= {step.progress for step in cut}
 
@@ -182,7 +182,7 @@ def listened(analysis):
 def test_steps_count_what_failed_before_them(make, caplog):
     """All evaluations of all solves but the initial rate's are in the steps, and each failure is counted once."""
     caplog.set_level(logging.INFO, logger="coilset.steps")
-    analysis = make("[{to: block, steps: 2}]", "solver.options.snes_max_it=5")
+    analysis = make("[{to: block, steps: 2}]", "solver.options.snes_max_it=7")
     analysis.initial_rate()
     solved = listened(analysis)
     before = analysis.system.evaluations

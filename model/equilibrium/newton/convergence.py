@@ -1,4 +1,5 @@
-"""The thesis's convergence test (6.3.1), and the outcome of a solve in words."""
+"""The thesis's convergence test (6.3.1), in one unit and with the balance of the whole body, and the outcome of a solve
+in words."""
 
 import math
 from typing import NamedTuple
@@ -36,7 +37,8 @@ class Imbalance(NamedTuple):
     """Distance of a state from equilibrium.
 
     Attributes:
-        residual_norm: of the out-of-balance forces |r − f|, N.
+        residual_norm: |r − f| of the out-of-balance forces, or their sum if that is larger, N. Moments count as forces
+            at the end of an arm, the body's extent.
         change: norm of the change of loads and reactions since the step's start |²R − ²F|, N.
         missed: part of the prescribed increments that is still missing.
     """
@@ -53,29 +55,39 @@ class Imbalance(NamedTuple):
 
 def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
     """Imbalance of the state evaluated last, which has the residual `F`; collective."""
-    reactions = system.state["reactions"]
-    squares = _squares(F.getArray(readonly=True), load.is_held, reactions.trial, reactions.equilibrium, load.supports)
+    reactions, layout = system.state["reactions"], system.layout
+    out, places = F.getArray(readonly=True), (layout.arms, layout.directions)
+    sums = _sums(out, load.is_held, reactions.trial, reactions.equilibrium, load.supports, *places)
     if system.comm.size > 1:
-        squares = tuple(system.comm.allreduce(np.array(squares)))
-    free, missed, change = [math.sqrt(square) for square in squares]
+        sums = system.comm.allreduce(sums)
+    free, missed, change = np.sqrt(sums[4:]).tolist()
     missed /= system.body.constraint_weight
-    return Imbalance(free, change, missed / load.prescribed if load.prescribed > 0.0 else missed)
+    whole = math.hypot(*sums[:3].tolist())
+    return Imbalance(max(free, whole), change, missed / load.prescribed if load.prescribed > 0.0 else missed)
 
 
 @njit(cache=True)
-def _squares(
-    F: np.ndarray, is_held: np.ndarray, reactions: np.ndarray, before: np.ndarray, supports: np.ndarray
-) -> tuple[float, float, float]:
-    """Of the residual where nothing is held, where something is, and of the reactions' change at the supports."""
-    free = held = change = 0.0
+def _sums(
+    F: np.ndarray,
+    is_held: np.ndarray,
+    reactions: np.ndarray,
+    before: np.ndarray,
+    supports: np.ndarray,
+    arms: np.ndarray,
+    directions: np.ndarray,
+) -> np.ndarray:
+    """Of the residual where nothing is held: x, y, z and all else; then squares: of the residual there, of that where
+    something is held, and of the reactions' change at the supports."""
+    sums = np.zeros(7)
     for i in range(len(F)):
         if is_held[i]:
-            held += F[i] * F[i]
+            sums[5] += F[i] * F[i]
         else:
-            free += F[i] * F[i]
+            sums[directions[i]] += F[i]
+            sums[4] += (F[i] / arms[i]) ** 2
     for i in supports:
-        change += (reactions[i] - before[i]) ** 2
-    return free, held, change
+        sums[6] += ((reactions[i] - before[i]) / arms[i]) ** 2
+    return sums
 
 
 class EquilibriumTest:

@@ -45,6 +45,16 @@ class Layout:
         """M of this rank's unknowns: how much each counts in the norm of a mode, shape (size_local,)."""
         return np.ones(self.size_local)
 
+    @cached_property
+    def arms(self) -> np.ndarray:
+        """By what each of this rank's forces is divided to compare them all, shape (size_local,), 1 or mm."""
+        return np.ones(self.size_local)
+
+    @cached_property
+    def directions(self) -> np.ndarray:
+        """0, 1, 2 of this rank's forces along x, y, z, whose sum is that on the body; else 3; shape (size_local,)."""
+        return np.full(self.size_local, 3)
+
     def vector(self, values: np.ndarray | None = None) -> PETSc.Vec:
         """A PETSc vector of the unknowns: new and zero, or around this rank's `values`, shape (size_local,)."""
         if values is None:
@@ -107,6 +117,21 @@ class LineLayout(Layout):
         n, natural = len(self.station_dofs), np.ones(self.size)
         natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * self.rod.extent) ** 2
         return self.from_order(natural).copy()
+
+    @cached_property
+    def arms(self) -> np.ndarray:
+        """See Layout: 1 of forces, the extent of moments, so that N mm are not added to N; collective."""
+        n, natural = len(self.station_dofs), np.ones(self.size)
+        for rows in (natural[: 6 * n], natural[-SEATS:]):
+            rows.reshape(-1, 6)[:, 3:] = self.rod.extent
+        return self.from_order(natural).copy()
+
+    @cached_property
+    def directions(self) -> np.ndarray:
+        """See Layout: of the forces on the stations; collective."""
+        n, natural = len(self.station_dofs), np.full(self.size, 3)
+        natural[: 6 * n].reshape(n, 6)[:, :3] = range(3)
+        return self.from_order(natural).astype(int)
 
     def turn(self, values: np.ndarray, rotations: np.ndarray) -> None:
         """Turn each station's displacement and rotation in `values` by its rotation in `rotations`, parts here."""
