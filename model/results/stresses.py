@@ -109,7 +109,8 @@ def bending(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[st
 def beyond_coil(setup: Setup, released: Snapshot | None, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
     """Stress along the wire of hooks or arms, MPa, positive in tension, and its turn; the residual one at that place.
 
-    The value of largest magnitude on their surface in any snapshot; None without hooks or arms.
+    The value of largest magnitude on their surface in any snapshot, in tension where compression is not larger by more
+    than rounding: straight wire in bending has both. None without hooks or arms.
     """
     names = "tail_stress_max_MPa", "tail_stress_max_turn", "residual_tail_stress_MPa"
     among = (setup.section_turns < 0.0) | (setup.section_turns > setup.spring.turns)
@@ -120,7 +121,8 @@ def beyond_coil(setup: Setup, released: Snapshot | None, snapshots: Sequence[Sna
         return surface.component(shot.surface_state, shot.components, "s11")[among]
 
     stress = max(map(along, snapshots), key=lambda values: float(np.abs(values).max()))
-    at, angle = np.unravel_index(np.abs(stress).argmax(), stress.shape)
+    in_tension = stress.max() >= -(1.0 - surface.TIE) * stress.min()
+    at, angle = np.unravel_index(_largest(np.maximum(stress, 0.0) if in_tension else stress), stress.shape)
     residual = None if released is None else float(along(released)[at, angle])
     return dict(zip(names, (float(stress[at, angle]), float(setup.section_turns[among][at]), residual), strict=True))
 
