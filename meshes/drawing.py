@@ -62,16 +62,22 @@ def _over_turn(
 def _side_view(axes: Axes, spring: Spring) -> None:
     """The spring seen along the y axis, far half turns behind the near ones, its ends cut where they are ground."""
     t = spring.breaks
-    reach = np.max(spring.mean_radius(t) + 0.5 * spring.width * spring.wire_diameter(t))
-    length, size = spring.free_length, max(spring.free_length, 2 * reach)
+    if spring.has_tails:
+        t = np.union1d(t, np.linspace(spring.corners[0], spring.corners[-1], 500))
+    x, _, z = spring.centre_line(t).T
+    half = 0.5 * spring.wire_diameter(t)
+    reach = np.max(np.maximum(spring.mean_radius(t), np.abs(x) * spring.has_tails) + spring.width * half)
+    low, high = spring.levels
+    low, high = (min(low, np.min(z - half)), max(high, np.max(z + half))) if spring.has_tails else (low, high)
+    size = max(high - low, 2 * reach)
     axes.set_axis_off()
     axes.set_aspect("equal", adjustable="box", anchor="C")
     axes.set_xlim(-reach - 0.25 * size, reach + 0.25 * size)
-    axes.set_ylim(-0.2 * size, length + 0.2 * size)
+    axes.set_ylim(low - 0.2 * size, high + 0.2 * size)
     axes.apply_aspect()
     points_per_mm = axes.get_window_extent().width / np.ptp(axes.get_xlim()) * 72 / axes.figure.dpi
-    cut = Rectangle((-2 * reach, 0), 4 * reach, length, transform=axes.transData)
-    for depth, turns in _half_turns(spring):
+    cut = Rectangle((-2 * reach, low), 4 * reach, high - low, transform=axes.transData)
+    for depth, turns in _pieces(spring):
         seen = spring.centre_line(turns)[:, [0, 2]]
         pieces = np.stack([seen[:-1], seen[1:]], axis=1)
         width = spring.wire_diameter(0.5 * (turns[1:] + turns[:-1])) * points_per_mm
@@ -85,29 +91,32 @@ def _side_view(axes: Axes, spring: Spring) -> None:
             )
             axes.add_collection(wire, autolim=False)
             wire.set_clip_path(cut)
-    _dimensions(axes, spring, reach, size)
+    _dimensions(axes, spring, reach, size, (low, high))
 
 
-def _half_turns(spring: Spring) -> Iterator[tuple[int, np.ndarray]]:
-    """Drawing order and turns of the pieces of the wire, split where it changes between the far and the near side."""
+def _pieces(spring: Spring) -> Iterator[tuple[int, np.ndarray]]:
+    """Drawing order and turns of the pieces of the wire: hooks and arms, and the coil split where it changes between
+    the far and the near side."""
     half = np.pi * spring.hand
     first = spring.phase / half
     marks = (np.arange(np.ceil(min(first, first + 2 * spring.turns)), max(first, first + 2 * spring.turns)) - first) / 2
-    marks = np.unique(np.concatenate([[0.0], np.abs(marks), [spring.turns]]))
+    marks = np.unique(np.concatenate([[0.0], np.abs(marks), [spring.turns], spring.corners[[0, -1]]]))
     for start, end in pairwise(marks):
         turns = np.linspace(start, end, max(3, int(PIECES_PER_TURN * (end - start)) + 1))
-        far = spring.centre_line(0.5 * (start + end))[1] > 0
-        yield (1 if far else 1000) + round(2 * start), turns
+        depth = float(spring.centre_line(turns)[:, 1].mean())
+        is_between = spring.has_tails and abs(depth) < 0.3 * spring.mean_radius(start)  # as a hook over the axis
+        yield (500 if is_between else 1 if depth > 0 else 1000) + round(2 * start), turns
 
 
-def _dimensions(axes: Axes, spring: Spring, reach: float, size: float) -> None:
+def _dimensions(axes: Axes, spring: Spring, reach: float, size: float, span: tuple[float, float]) -> None:
     length, last = spring.free_length, spring.turns
-    for level in (0.0, length):
+    for level in spring.levels:
         axes.plot([-reach - 0.05 * size, reach + 0.2 * size], [level, level], color=DIMENSION, lw=0.7, zorder=0)
-    _dimension(axes, (reach + 0.15 * size, 0), (reach + 0.15 * size, length), f"L0 = {length:.4g} mm")
+    low, high = spring.levels
+    _dimension(axes, (reach + 0.15 * size, low), (reach + 0.15 * size, high), f"L0 = {length:.4g} mm")
     t = spring.breaks
     outer = 2 * spring.mean_radius(t) + spring.width * spring.wire_diameter(t)
-    for turn, level in ((0.0, -0.09 * size), (last, length + 0.09 * size)):
+    for turn, level in ((0.0, span[0] - 0.09 * size), (last, span[1] + 0.09 * size)):
         d, radius = spring.width * spring.wire_diameter(turn), spring.mean_radius(turn)
         _dimension(axes, (-radius - d / 2, level), (radius + d / 2, level), f"De = {2 * radius + d:.4g} mm")
     widest = t[np.argmax(outer)]

@@ -16,9 +16,10 @@ def silhouette(spring: Spring) -> Lines:
 
     A tube is the union of the spheres about its centre line, so that a point of an outline is hidden exactly where the
     front of one of them is nearer to the eye. A wire that is not round is drawn with its height. What grinding took
-    away is left out, and the ground faces are lines.
+    away is left out, and the ground faces are lines. Hooks and arms are part of the wire.
     """
-    t = np.linspace(0.0, spring.turns, int(PER_TURN * spring.turns) + 1)
+    first, last = spring.corners[[0, -1]]
+    t = np.linspace(first, last, int(PER_TURN * (last - first)) + 1)
     centre, radius = spring.centre_line(t), 0.5 * spring.wire_diameter(t)
     tangent = spring.tangent(t)
     flat = tangent[:, [2, 0]] * [1.0, -1.0]  # ⟂ the tangent, in the plane of the drawing
@@ -29,14 +30,15 @@ def silhouette(spring: Spring) -> Lines:
     found: Lines = []
     for edge in edges:
         seen = _visible(edge, centre, radius)
-        seen &= (edge[:, 2] >= -TINY * radius[0]) & (edge[:, 2] <= spring.free_length + TINY * radius[0])
+        if not spring.has_tails:
+            seen &= (edge[:, 2] >= -TINY * radius[0]) & (edge[:, 2] <= spring.free_length + TINY * radius[0])
         found += _runs(edge[:, [0, 2]], seen)
     return found + [face for end in ("bottom", "top") if (face := _ground(spring, end)) is not None]
 
 
 def _face(centre: np.ndarray, tangent: np.ndarray, radius: float) -> np.ndarray:
     """The circle of a wire's cut end, shape (n, 3)."""
-    first = np.cross(tangent, [0.0, 0.0, 1.0])
+    first = np.cross(tangent, np.eye(3)[np.argmin(np.abs(tangent))])
     first /= np.linalg.norm(first)
     angle = np.linspace(0.0, 2 * np.pi, 49)[:, None]
     circle: np.ndarray = centre + radius * (np.cos(angle) * first + np.sin(angle) * np.cross(tangent, first))

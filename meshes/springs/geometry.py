@@ -281,16 +281,21 @@ class Spring:
         return 1.0 if self.section is None else 0.5 * float(self.section.high[0] - self.section.low[0])
 
     @cached_property
-    def free_length(self) -> float:
-        """Distance between the seats that touch the unloaded coil, mm; with hooks that between their insides."""
+    def levels(self) -> tuple[float, float]:
+        """Heights of the seats that touch the unloaded coil, and with hooks of their insides, mm."""
         ends = [self.centre_line(t)[2] for t in self.held]
-        insides = [
-            end + side * 0.5 * float(self.wire_diameter(t)) if tail is not None and tail.pulled else plane
+        low, high = (
+            float(end + side * 0.5 * self.wire_diameter(t)) if tail is not None and tail.pulled else plane
             for end, side, t, tail, plane in zip(
                 ends, (1.0, -1.0), self.held, self.tails, (0.0, self.body_length), strict=True
             )
-        ]
-        return float(insides[1] - insides[0])
+        )
+        return low, high
+
+    @property
+    def free_length(self) -> float:
+        """Distance between the seats that touch the unloaded coil, mm; with hooks that between their insides."""
+        return self.levels[1] - self.levels[0]
 
     @property
     def body_length(self) -> float:

@@ -13,7 +13,12 @@ from coilset.model.standards.wires.steel import STEEL, Elastic
 
 @dataclass(frozen=True)
 class SpringData:
-    """Data of a spring in mm, N and kg; ranges are pairs of minimum and maximum."""
+    """Data of a spring in mm, N and kg; ranges are pairs of minimum and maximum.
+
+    Attributes:
+        body_length: of a spring that is not pressed between seats: with hooks or arms, or wound solid; else None.
+        turn_rate: of a spring with arms, N mm/°: E I over the length of its wire; else None.
+    """
 
     turns: float
     active_turns: float
@@ -32,6 +37,8 @@ class SpringData:
     buckling_travel: float
     rate: float
     axis: Axis | None = None
+    body_length: float | None = None
+    turn_rate: float | None = None
 
     @property
     def is_cylinder(self) -> bool:
@@ -45,8 +52,6 @@ class SpringData:
             low, high = pair
             return f"{low:.4g}" if high - low < 5e-4 * high else f"{low:.4g} to {high:.4g}"
 
-        rate = "rate G d⁴/(8 D³ n), EN 13906-1" if self.is_cylinder else "rate by torsion, G/(64 ∫ r³/d⁴ dn)"
-        buckling = f"{self.buckling_travel:.4g}" if np.isfinite(self.buckling_travel) else "never"
         return [
             ("turns", f"{self.turns:g}", ""),
             ("active turns", f"{self.active_turns:g}", ""),
@@ -57,16 +62,39 @@ class SpringData:
             ("inner diameter", f"{self.inner_diameter:.4g}", "mm"),
             ("pitch", span(self.pitch), "mm"),
             ("free length", f"{self.free_length:.5g}", "mm"),
-            ("block length", f"{self.block_length:.5g}", "mm"),
-            ("travel to block", f"{self.free_length - self.block_length:.5g}", "mm"),
+            *self._lengths(),
             ("wire length", f"{self.wire_length:.5g}", "mm"),
             ("mass", *((f"{self.mass:.4g}", "kg") if self.mass >= 1.0 else (f"{self.mass * 1e3:.4g}", "g"))),
             ("spring index D/d", span(self.index), ""),
-            ("slenderness L0/D", f"{self.slenderness:.3g}", ""),
-            ("travel to buckling, parallel seats", buckling, "mm" if np.isfinite(self.buckling_travel) else ""),
-            (rate, f"{self.rate:.5g}", "N/mm"),
+            *self._buckling(),
+            self._rate(),
             *self._axis_rows(),
         ]
+
+    def _lengths(self) -> list[tuple[str, str, str]]:
+        if self.body_length is not None:
+            return [("length of the body", f"{self.body_length:.5g}", "mm")]
+        return [
+            ("block length", f"{self.block_length:.5g}", "mm"),
+            ("travel to block", f"{self.free_length - self.block_length:.5g}", "mm"),
+        ]
+
+    def _buckling(self) -> list[tuple[str, str, str]]:
+        if self.body_length is not None:
+            return []
+        travel = f"{self.buckling_travel:.4g}" if np.isfinite(self.buckling_travel) else "never"
+        return [
+            ("slenderness L0/D", f"{self.slenderness:.3g}", ""),
+            ("travel to buckling, parallel seats", travel, "mm" if np.isfinite(self.buckling_travel) else ""),
+        ]
+
+    def _rate(self) -> tuple[str, str, str]:
+        if self.turn_rate is not None:
+            return "rate E I/l, EN 13906-3 with the arms' wire", f"{self.turn_rate:.5g}", "N mm/°"
+        formula = "rate G d⁴/(8 D³ n), EN 13906-1" if self.is_cylinder else "rate by torsion, G/(64 ∫ r³/d⁴ dn)"
+        if self.body_length is not None:
+            formula = formula.replace("13906-1", "13906-2, of the body")
+        return formula, f"{self.rate:.5g}", "N/mm"
 
     def _axis_rows(self) -> list[tuple[str, str, str]]:
         if self.axis is None:
@@ -93,6 +121,9 @@ def spring_data(spring: Spring, material: Elastic = STEEL) -> SpringData:
     def span(values: np.ndarray) -> tuple[float, float]:
         return float(values.min()), float(values.max())
 
+    has_arms = any(tail is not None and not tail.pulled for tail in spring.tails)
+    is_solid = spring.body_length < spring.block_height * (1.0 + 1e-9)
+    bending = material.young_modulus * np.pi * float(d.min()) ** 4 / 64.0
     return SpringData(
         turns=spring.turns,
         active_turns=spring.active_turns,
@@ -111,4 +142,6 @@ def spring_data(spring: Spring, material: Elastic = STEEL) -> SpringData:
         buckling_travel=buckling_travel(spring, material.shear_modulus / material.young_modulus),
         rate=torsion_rate(spring, material.shear_modulus),
         axis=spring.measured_axis,
+        body_length=spring.body_length if spring.has_tails or is_solid else None,
+        turn_rate=float(np.radians(bending / spring.wire_length)) if has_arms else None,
     )

@@ -19,7 +19,7 @@ SPRINGS = Path(__file__).parents[2] / "examples" / "springs"
 def test_every_example_has_its_data(case, capsys):
     mesh(case, pictures=False)
     printed = capsys.readouterr().out
-    for label in ("turns", "active turns", "wire length", "mass", "block length", "spring index D/d", "rate"):
+    for label in ("turns", "active turns", "wire length", "mass", "free length", "spring index D/d", "rate"):
         assert label in printed
     assert "warning" not in printed
 

@@ -85,21 +85,26 @@ def view(
     """
     t = spring.breaks
     reach = float(np.max(spring.mean_radius(t) + 0.5 * spring.width * spring.wire_diameter(t)))
-    length = spring.free_length
-    made = Drawing(_round_scale(max(length / HIGH, 2.0 * reach / WIDE)))
+    length, base = spring.free_length, spring.levels[0]
+    outlines = [line - [0.0, base] for line in silhouette(spring)]
+    low, high = 0.0, length
+    if spring.has_tails:
+        x, z = np.concatenate(outlines).T
+        low, high, reach = min(low, z.min()), max(high, z.max()), max(reach, np.abs(x).max())
+    made = Drawing(_round_scale(max((high - low) / HIGH, 2.0 * reach / WIDE)))
     u = made.unit
-    made.lines += [(line, "OUTLINE") for line in silhouette(spring)]
-    made.line((0.0, -3.0 * u), (0.0, length + 3.0 * u), layer="AXIS")
+    made.lines += [(line, "OUTLINE") for line in outlines]
+    made.line((0.0, low - 3.0 * u), (0.0, high + 3.0 * u), layer="AXIS")
     for row, (width, text) in enumerate(widths, 1):
-        y = -(3.0 + 6.0 * row) * u
+        y = low - (3.0 + 6.0 * row) * u
         for x in (-0.5 * width, 0.5 * width):
-            made.line((x, -1.0 * u), (x, y - 1.0 * u))
+            made.line((x, low - 1.0 * u), (x, y - 1.0 * u))
         made.arrow((-0.5 * width, y), (0.5 * width, y))
         made.texts.append(Text(text, 0.0, y + 0.8 * u, True))
     _levels(made, reach, levels)
     middle = float(spring.turns) / 2.0
     left = min(np.linspace(middle - 0.5, middle + 0.5, 65), key=lambda turn: spring.centre_line(turn)[0])
-    x, _, z = spring.centre_line(left)
+    x, z = spring.centre_line(left)[[0, 2]] - [0.0, base]
     made.line((x, z), (-reach - 6.0 * u, z + 5.0 * u), (-reach - 8.0 * u, z + 5.0 * u))
     start = -reach - 9.0 * u - 0.62 * LETTERS * u * max(map(len, (wire, *notes)))
     made.line((-reach - 8.0 * u, z + 5.0 * u), (start, z + 5.0 * u))
