@@ -131,7 +131,17 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
     for number, at in enumerate(spec.such_that.force_at):
         name = f"{GROUP}force_at" + (f".{number}" if len(spec.such_that.force_at) > 1 else "")
         found += _conditions(name, at.N, at.height, _phase(program, at.height))
+    if data.get("ends", "seats") == "seats":
+        _refuse_tension(found)
     return found, data
+
+
+def _refuse_tension(found: Iterable[Condition]) -> None:
+    """Refuse forces and sets below 0 of a spring between seats, which only press."""
+    for one in found:
+        is_of_press = one.height is not None or one.short_name in ("set_mm", "force_max_N")
+        if is_of_press and one.target <= 0.0 and one.sense == EQUALS:
+            raise InputError(f"is {one.target:g}; must be greater than 0 of a spring between seats", one.name)
 
 
 def _of_case(base: Mapping[str, Any], data: dict[str, Any], given: set[str | float]) -> Iterator[Condition]:

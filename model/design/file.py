@@ -49,6 +49,8 @@ OR_LIMITS = Discriminator(lambda value: "(limits)" if isinstance(value, dict | L
 OrLimits = Annotated[Limits, Tag("(limits)")]
 Positive = Field(gt=0)
 Length = Annotated[Annotated[float, Unit("mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+Signed = Annotated[Annotated[float, Unit("mm"), Tag("(value)")] | OrLimits, OR_LIMITS]
+Load = Annotated[Annotated[float, Unit("N"), Tag("(value)")] | OrLimits, OR_LIMITS]
 Force = Annotated[Annotated[float, Unit("N"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 Rate = Annotated[Annotated[float, Unit("N/mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
 TurnRate = Annotated[Annotated[float, Unit("N mm/°"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
@@ -66,7 +68,7 @@ class ForceAt(Strict):
     """
 
     height: Annotated[float, Unit("mm"), Field(gt=0, description="distance between the seats, mm")]
-    N: Annotated[Force, Field(description="axial force at this height, N; a number or limits")]
+    N: Annotated[Load, Field(description="axial force at this height, N, negative in tension; a number or limits")]
 
 
 class Conditions(Strict):
@@ -74,10 +76,14 @@ class Conditions(Strict):
 
     free_length_after_mm: Annotated[Length | None, Field(description="free length after the program, mm")] = None
     free_length_before_mm: Annotated[Length | None, Field(description="free length as wound, mm")] = None
-    set_mm: Annotated[Length | None, Field(description="loss of free length, mm")] = None
+    set_mm: Annotated[Signed | None, Field(description="loss of free length, mm; negative of an extension spring")] = (
+        None
+    )
     block_height_mm: Annotated[Length | None, Field(description="height at which all coils touch, mm")] = None
     rate_N_per_mm: Annotated[Rate | None, Field(description="initial rate of the spring as wound, N/mm")] = None
-    force_max_N: Annotated[Force | None, Field(description="maximum force of the program, N")] = None
+    force_max_N: Annotated[
+        Load | None, Field(description="force of largest magnitude of the program, N; negative in tension")
+    ] = None
     open_rate_N_per_mm: Annotated[Rate | None, Field(description="rate of an extension spring with open coils")] = None
     initial_tension_after_N: Annotated[
         Force | None, Field(description="initial tension that the last release leaves, N")
