@@ -1,4 +1,4 @@
-"""Visible outlines of a spring seen from the side, as lines: what a drawing and a DXF file show."""
+"""Visible outlines of a spring seen from the side or from above, as lines: what a drawing and a DXF file show."""
 
 import numpy as np
 
@@ -11,17 +11,19 @@ BLOCK = 4096  # points whose visibility is found at once
 Lines = list[np.ndarray]
 
 
-def silhouette(spring: Spring) -> Lines:
-    """Visible parts of the wire's outlines seen against the y axis, each of shape (n, 2): x and z, mm.
+def silhouette(spring: Spring, from_above: bool = False) -> Lines:
+    """Visible parts of the wire's outlines, each of shape (n, 2), mm: x and z, seen along y, or x and y from above.
 
     A tube is the union of the spheres about its centre line, so that a point of an outline is hidden exactly where the
     front of one of them is nearer to the eye. A wire that is not round is drawn with its height. What grinding took
-    away is left out, and the ground faces are lines. Hooks and arms are part of the wire.
+    away is left out, and the ground faces are lines, but not from above. Hooks and arms are part of the wire.
     """
     first, last = spring.corners[[0, -1]]
     t = np.linspace(first, last, int(PER_TURN * (last - first)) + 1)
     centre, radius = spring.centre_line(t), 0.5 * spring.wire_diameter(t)
     tangent = spring.tangent(t)
+    if from_above:  # turned about x, so that the eye is at y = −∞
+        centre, tangent = (points[:, [0, 2, 1]] * [1.0, -1.0, 1.0] for points in (centre, tangent))
     flat = tangent[:, [2, 0]] * [1.0, -1.0]  # ⟂ the tangent, in the plane of the drawing
     size = np.linalg.norm(flat, axis=1, keepdims=True)
     side = np.where(size > 1e-9, flat / np.maximum(size, 1e-300), [1.0, 0.0])
@@ -30,9 +32,11 @@ def silhouette(spring: Spring) -> Lines:
     found: Lines = []
     for edge in edges:
         seen = _visible(edge, centre, radius)
-        if not spring.has_tails:
+        if not (from_above or spring.has_tails):
             seen &= (edge[:, 2] >= -TINY * radius[0]) & (edge[:, 2] <= spring.free_length + TINY * radius[0])
         found += _runs(edge[:, [0, 2]], seen)
+    if from_above:
+        return found
     return found + [face for end in ("bottom", "top") if (face := _ground(spring, end)) is not None]
 
 

@@ -93,6 +93,10 @@ def test_an_extension_spring_is_drawn_with_the_forces_of_its_table():
     formula, points = found.panels[0].traces
     assert formula["y"][[0, -1]] == pytest.approx([sheet.tension, exact])
     assert points["y"] == pytest.approx([exact])
+    levels = [text.text for text in found.drawing.texts]
+    assert {"L0 = 95.48", "LK = 33", "L1 = 195.5   F1 = 312.9 N"} <= set(levels)
+    outline = np.concatenate([line for line, layer in found.drawing.lines if layer == "OUTLINE"])
+    assert np.ptp(outline[:, 1]) == pytest.approx(95.48 + 2 * 3.0, abs=0.02)  # L0 is between the insides of the hooks
     assert ("top hook", "german") in [(line.label, line.value) for line in found.tables[0][1]]
 
 
@@ -103,7 +107,10 @@ def test_a_torsion_spring_has_its_arms_on_one_page():
     rows = [(line.label.strip(), line.value) for _, lines in found.tables for line in lines]
     assert rows.count(("gerade Länge", "25")) == 2
     assert {"Schenkel oben", "mit eingespannten Schenkeln"} <= dict(rows).keys()
-    assert found.remarks[-1] == "the arms are not drawn"
+    lengths = [text for text in found.drawing.texts if text.text == "25"]
+    assert len(lengths) == 2  # beside the arms, which are seen from above
+    outline = np.concatenate([line for line, layer in found.drawing.lines if layer == "OUTLINE"])
+    assert max(outline[:, 0]) - min(text.x for text in lengths) > 30.0
     assert WRITERS[".html"](found).decode().count("<svg") == 1
 
 

@@ -30,6 +30,7 @@ FINISHED = {
     "force_max_N": ("greatest force of the run", "N"),
 }
 TAILS = ("hooks", "arms")
+ALL = ("all", "all others")  # rows of what a table has not
 POINTS = 200  # of the formula's curve
 
 
@@ -90,7 +91,12 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
     basis = f"Results of the run {run}, beside the formulas of {norms}" if run else without
     kind = "Extension spring" if sheet.pulled else "Torsion spring" if sheet.turns_to else "Compression spring"
     parts = sections(sheet)
-    missing = [f"{row.label.strip()}: {row.why}" for _, rows in parts for row in rows if _empty(row) and row.why]
+    missing = [
+        f"{title if row.label.strip() in ALL else row.label.strip()}: {row.why}"
+        for title, rows in parts
+        for row in rows
+        if _empty(row) and row.why
+    ]
     tables = [(words("Design"), [*_design(sheet, spring, words), *_tails(case, words)])]
     tables += [(words(title), [_line(row, words) for row in rows if not _empty(row)]) for title, rows in parts]
     summary = sheet.found.summary if sheet.found else {}
@@ -108,7 +114,7 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
         [(title, lines) for title, lines in tables if lines],
         bool(run),
         [_translated(panel, words) for panel in _panels(sheet, limits)],
-        [*missing, *(f"the {kind} are not drawn" for kind in TAILS if getattr(case.spring, kind, None)), *remarks],
+        [*missing, *remarks],
         words,
     )
 
@@ -126,7 +132,8 @@ def _design(sheet: Sheet, spring: Spring, words: Words) -> Iterator[Line]:
     if sheet.wire:
         yield Line(words("wire"), sheet.wire.name)
     yield Line(words("coiling direction"), words("right" if spring.hand > 0 else "left"))
-    yield Line(words("ends"), words(s.ends))
+    if not (sheet.pulled or sheet.turns_to):
+        yield Line(words("ends"), words(s.ends))
     yield Line(words("total turns nt"), words.number(s.turns))
     yield Line(words("outer diameter De"), words.number(s.D + width), unit="mm")
     yield Line(words("inner diameter Di"), words.number(s.D - width), unit="mm")
@@ -207,14 +214,17 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
         return number(value) if spread is None else f"{number(value)} ± {number(spread, 2)}"
 
     free_text = about(free, "free_length_after_mm", given.free_length if given else None)
-    levels = [Level(free, f"L0 = {free_text}")]
+    levels, loads = [Level(free, f"L0 = {free_text}", spring.levels[0])], []
     for k, length in enumerate(sorted(sheet.lengths, reverse=not sheet.pulled)[: MOST_LEVELS - 1], 1):
         force = sheet.found.force_at(length) if sheet.found else None
         force = sheet.force(length) if force is None else force
         spread = en15800.force_tolerance(sheet.grade, s.d, s.D, s.n, force) if covered else None
         text = about(abs(force) if sheet.pulled else force, number_name("force", length), spread)
-        levels.append(Level(length, f"L{k} = {number(length)}   F{k} = {text} N"))
+        loads.append(Level(length, f"L{k} = {number(length)}   F{k} = {text} N"))
+    if sheet.pulled:  # beyond the drawing
+        levels.append(Level(spring.body_length, f"LK = {number(spring.body_length)}"))
     if compressed:
+        levels += loads
         levels.append(Level(sheet.smallest, f"Ln = {number(sheet.smallest)}"))
         levels.append(Level(sheet.shortest, f"Lc = {number(sheet.shortest)}"))
     mean = about(s.D, "", given.coil_diameter if given else None)
@@ -226,10 +236,13 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
     tolerance = sheet.tolerance_of_wire
     wire = number(s.d) if s.wire is None else f"{number(s.wire.width)} × {number(s.d)}"
     notes = [words("coiled right-hand" if spring.hand > 0 else "coiled left-hand")]
+    notes += [load.text for load in loads] if sheet.pulled else []
     if given:
         notes.append(f"e1 ≤ {number(given.lean, 3)}")
         notes += [f"e2 ≤ {number(given.parallelism, 3)}"] if s.ends == "closed and ground" else []
-    return view(spring, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""), notes)
+    return view(
+        spring, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""), notes, number
+    )
 
 
 def _panels(sheet: Sheet, limits: Mapping[str, Limit]) -> Iterator[Panel]:

@@ -111,9 +111,7 @@ def _columns(axes: Axes, items: Sequence[Item], top: float, made: Document) -> l
     rest = list(items)
     for left in (MARGIN, MARGIN + COLUMN + 6.0):
         y = top
-        while rest and y > MARGIN + 2.0 * PITCH:
-            if y < top and y - _group(rest) * PITCH < MARGIN:
-                break
+        while rest and y - _group(rest) * PITCH > MARGIN:
             title, line = rest.pop(0)
             y -= PITCH * (1.0 if line else 1.4)
             _row(axes, left, y, title, line, made)
