@@ -11,7 +11,15 @@ from coilset.model.figures.panels.buckling import buckling_axis, buckling_mode
 from coilset.model.figures.panels.characteristic import characteristic, rate_curve
 from coilset.model.figures.panels.cost import cost, step_error
 from coilset.model.figures.panels.fatigue import fatigue_map, fatigue_view
-from coilset.model.figures.panels.force_line import side_force, side_view_x, side_view_y, view_along_axis
+from coilset.model.figures.panels.force_line import (
+    side_force,
+    side_view_x,
+    side_view_y,
+    sideways,
+    tilt_moments,
+    tilts,
+    view_along_axis,
+)
 from coilset.model.figures.panels.material_curves import material_curve
 from coilset.model.figures.panels.panel import Panel
 from coilset.model.figures.panels.seats import active_turns, contact, contact_length, eccentricity, force_centre
@@ -30,7 +38,7 @@ CHAPTERS: tuple[tuple[str, tuple[Callable[[Run], Panel | None], ...]], ...] = (
     ("Along the wire", (stress_along_wire, moments_along_wire)),
     ("Fatigue", (fatigue_map, fatigue_view)),
     ("Seats and coils", (force_centre, eccentricity, contact, contact_length, active_turns)),
-    ("Force line", (side_view_x, side_view_y, view_along_axis, side_force)),
+    ("Side load", (side_view_x, side_view_y, view_along_axis, side_force, sideways, tilts, tilt_moments)),
     ("Buckling", (buckling_mode, buckling_axis)),
     ("Material", (material_curve,)),
     ("How it was computed", (cost, step_error)),

@@ -142,3 +142,6 @@ def test_the_example_is_drawn_in_three_views(example):
         assert ends[-1]["y"] == [0.0, pytest.approx(220.0)]
     assert force_line.view_along_axis(run) is not None
     assert force_line.side_force(run) is not None
+    assert force_line.tilts(run).title == "The seats tilt by up to 4°"
+    assert {trace.get("name") for trace in force_line.sideways(run).traces} == {"bottom seat, x"}
+    assert force_line.tilt_moments(run) is not None

@@ -1,4 +1,4 @@
-"""The force line: the line of action of the spring's force in three views, and over travel."""
+"""The force line: the line of action of the spring's force in three views, and over travel; how heads move, and why."""
 
 from typing import Any
 
@@ -14,6 +14,8 @@ from coilset.model.results.records.labels import plain
 LINES = 4  # states whose lines are drawn in a view
 PER_TURN = 48  # points of the wire in a view
 PLANES = "lower", "upper"
+ENDS = "bottom", "top"
+ACROSS = {"sideways", "tilt", "side_force", "tilt_moment"}  # what a program drives across the axis
 
 
 def side_view_x(run: Run) -> Panel | None:
@@ -38,7 +40,7 @@ def _side_view(run: Run, across: int) -> Panel | None:
     for number, step in enumerate(steps):
         places = [
             float(data[f"{end}_shift_{name}_mm"].values[step] + data[f"{end}_centre_{name}_mm"].values[step])
-            for end in ("bottom", "top")
+            for end in ENDS
         ]
         label = (
             f"{plain(float(data['travel_mm'].values[step]))} mm, {plain(abs(float(data['force_N'].values[step])))} N"
@@ -94,9 +96,8 @@ def view_along_axis(run: Run) -> Panel | None:
 
 
 def side_force(run: Run) -> Panel | None:
-    """Force across the axis over travel; None as above."""
-    steps = _steps(run)
-    if not len(steps):
+    """Force across the axis over travel; None without `force_line` unless the program drives a head across the axis."""
+    if not len(_steps(run)) and not _is_driven(run):
         return None
     force = run.data["side_force_N"].values
     finding = f"The side force comes to {plain(float(np.nanmax(force)))} N"
@@ -108,6 +109,52 @@ def side_force(run: Run) -> Panel | None:
         {"xaxis": axis("travel, mm"), "yaxis": axis("side force, N", rangemode="tozero")},
         height=480,
     )
+
+
+def sideways(run: Run) -> Panel | None:
+    """How far the heads move across the axis over travel; None unless the program drives a head so, as the next two."""
+    return _of_heads(run, "heads_sideways", "shift_{}_mm", "move sideways by", "sideways", "mm")
+
+
+def tilts(run: Run) -> Panel | None:
+    """Rotation of the heads across the axis over travel."""
+    return _of_heads(run, "heads_tilt", "tilt_{}_deg", "tilt by", "tilt", "°")
+
+
+def tilt_moments(run: Run) -> Panel | None:
+    """Moments on the spring across its axis over travel, about the heads' points."""
+    return _of_heads(run, "heads_moment", "moment_{}_Nmm", "bend the spring with", "moment across the axis", "N mm")
+
+
+def _of_heads(run: Run, name: str, column: str, verb: str, label: str, unit: str) -> Panel | None:
+    """x and y of a vector of both heads, those that are not zero throughout."""
+    if not _is_driven(run):
+        return None
+    data = {(end, x): run.data[f"{end}_{column.format(x)}"].values for end in ENDS for x in "xy"}
+    most = max(float(np.nanmax(np.hypot(data[end, "x"], data[end, "y"]))) for end in ENDS)
+    if not most > 0.0:
+        return None
+    shown = [
+        (values, {"name": f"{end} seat, {x}", "colour": number, "marker": 4})
+        for number, ((end, x), values) in enumerate(data.items())
+        if np.nanmax(np.abs(values)) > 1e-9 * most
+    ]
+    finding = f"The seats {verb} up to {plain(most)}{'' if unit == '°' else ' '}{unit}"
+    return Panel(
+        name,
+        finding,
+        f"{finding}. Components along x and y over travel.",
+        over_travel(run, shown),
+        {"xaxis": axis("travel, mm"), "yaxis": axis(f"{label}, {unit}")},
+        height=480,
+    )
+
+
+def _is_driven(run: Run) -> bool:
+    """Whether the program drives a head across the axis, of a spring that is pressed or pulled."""
+    targets = [phase["to"] for phase in run.case["loading"] if isinstance(phase.get("to"), dict)]
+    given = {name for to in targets for end in ENDS for name, value in (to.get(end) or {}).items() if value is not None}
+    return bool(given & ACROSS) and not run.is_turned
 
 
 def _planes(run: Run) -> list[str]:
