@@ -39,7 +39,7 @@ def write_sweep_report(folder: str | Path) -> Path:
     folder = Path(folder)
     with reading(folder / FILE):
         data = labelled(folder)
-        of = next((name for name in ANSWERS if name in data), "seconds")
+        of = next((name for name in ANSWERS if name in data and data[name].notnull().any()), "seconds")
         columns = _columns(data, of)
     capable = capabilities(data)
     panels = [panel for panel in (_deciding(data, of), _spread(data, of)) if panel is not None]

@@ -67,11 +67,11 @@ def estimate(case: Case, spring: Spring, law: Law) -> Estimate:
         travels, forces = (None, way) if kind == "force" else (way, None)
         _, state = press(state, law, travels, forces, RULE, free, temperature)
         travel, force = float(state.travel[0]), float(state.force[0])
-        greatest = max(greatest, abs(force))
+        greatest = max(greatest, force, key=abs)
         torque = max(torque, abs(float(state.sections[0, TORSION])))
         found[f"force {number}"] = force
     found["force_max_N"] = greatest
-    if force == 0.0 or abs(force) < 1e-6 * greatest:
+    if force == 0.0 or abs(force) < 1e-6 * abs(greatest):
         found |= {"free_length_after_mm": length - travel, "set_mm": travel}
     if case.working is not None:
         found |= _working(case.working, state, law, free, temperature, length)

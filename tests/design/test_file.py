@@ -25,6 +25,7 @@ def build(path):
         ({"spring.pitch": 9}, SUCH, "find.spring.pitch: must be the minimum and the maximum value"),
         (FIND, {}, "such_that: there is no condition"),
         (FIND, {"free_length_after": 25.0}, "is free_length_after_mm meant?"),
+        (FIND, {"set_mm": -0.3}, "such_that.set_mm: is -0.3; must be greater than 0 of a spring between seats"),
         (FIND, {"force_at": {"height": 30.0}}, "such_that.force_at.0.N: this entry is required"),
         ({**FIND, "spring.turns": [2, 3]}, SUCH, "2 unknowns and 1 condition"),
         ({"spring.pich": [9, 15]}, SUCH, "spring.pich: unknown entry; is pitch meant?"),

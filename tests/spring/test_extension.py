@@ -11,6 +11,7 @@ from coilset.model.run.analysis import Analysis
 from coilset.model.standards import en13906
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.rows import sections
+from coilset.model.uniform_coil.estimate import estimate
 from coilset.verification.spring_references.coil_by_coil import shear_curve
 
 WIRE, MEAN, TURNS, TENSION = 3.0, 30.0, 8.0, 25.0
@@ -82,6 +83,13 @@ def test_the_sheet_has_the_formulas_of_part_2():
     assert "13906-2" in title
     assert found["force at 47 mm"] == pytest.approx(TENSION + 20.0 * made.rate)
     assert found["stress τ0"] == pytest.approx(8 * MEAN * TENSION / (np.pi * WIRE**3))
+
+
+def test_force_and_set_by_the_uniform_rod_have_the_sign_of_a_pull(ck15):
+    """Else a design searches on the wrong side."""
+    case = check(data([{"to": {"travel": -40}}, {"to": {"force": 0}}], material="ck15"))
+    numbers = estimate(case, case.spring.build(), ck15).numbers
+    assert max(numbers["force_max_N"], numbers["set_mm"]) < -1.0
 
 
 @pytest.mark.parametrize(
