@@ -34,10 +34,11 @@ def characteristic(run: Run) -> Panel:
     traces += unnamed(found, NAMED)
     greatest, rate, set_mm = summary["force_max_N"], summary["rate_N_per_mm"], summary["set_mm"]
     opened, held = (summary.get(name) for name in ("open_rate_N_per_mm", "initial_tension_N"))
-    if opened:  # the initial rate is that of coils that touch
-        x = np.array([float(np.nanmin(run.data["travel_mm"].values)), 0.0])
-        name = f"{held:.4g} N + {opened:.4g} N/mm · extension"
-        traces.append(curve(x, opened * x - held, GREY, dash="dot", width=1.2, name=name))
+    if opened and held:  # the initial rate is that of coils that touch
+        start = _opening_travel(run, held)
+        x = np.array([float(np.nanmin(run.data["travel_mm"].values)), start])
+        name = f"{held:.4g} N + {opened:.4g} N/mm · s from where the coils open"
+        traces.append(curve(x, opened * (x - start) - held, GREY, dash="dot", width=1.2, name=name))
     elif rate:
         travels = np.abs(run.data["travel_mm"].values)
         end = min(abs(greatest) / rate, float(np.nanmax(travels, initial=0.0)) or 1.0)
@@ -104,6 +105,13 @@ def _curves(
     for phase in found:
         steps = np.append(phase.steps[0], phase.steps + 1)
         yield phase, travel[steps], force[steps]
+
+
+def _opening_travel(run: Run, held: float) -> float:
+    """Travel at which wound coils open, at F0 = `held` on the line from 0 through the first step of closed ones."""
+    travel, force, contacts = (run.data[name].values for name in ("travel_mm", "force_N", "contacts"))
+    closed = np.flatnonzero((force < 0.0) & (contacts > 0))
+    return -held * float(travel[closed[0]] / force[closed[0]]) if len(closed) else 0.0
 
 
 def opening(run: Run, phase: Phase) -> list[int]:
