@@ -308,7 +308,7 @@ class Result:
 
         >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
         >>> print(f"{result.force_at(10):.0f} N when pressed, {result.force_at(15, phase=1):.0f} N on release")
-        178 N when pressed, 71 N on release
+        178 N when pressed, 70 N on release
         """
         return place_at(self.data, travel, phase).force
 

@@ -131,13 +131,16 @@ class Body(ABC):
     def estimate_errors(self) -> None:
         """Prepare for estimates from now on; may add fields to the state, so call it before anything is saved."""
 
-    def error_works(self, ratio: float, kinked: bool, final: bool) -> tuple[float, float, float, float]:
+    def error_works(
+        self, ratio: float, kinked: bool, final: bool, rate: np.ndarray | None = None
+    ) -> tuple[float, float, float, float]:
         """Works of the errors of the internal forces; call it once at the end of a step, before the commit.
 
         Args:
             ratio: size of the step over that of the previous one on the same path, 0 if there is none.
-            kinked: whether the path of strains has a kink within the step, in the worst case in its middle.
+            kinked: whether the path of strains has a kink within the step.
             final: whether the step is committed in any case; else the next `restore` of the state may discard it.
+            rate: of the local unknowns at the end of the step, times its size; None if it is not known.
 
         Returns:
             Four works: of the error of the internal forces on the step's deformation; of the share of the error that

@@ -2,9 +2,12 @@
 
 A step integrates the law along a straight strain path. This causes two errors of second order: the law's own, and that
 of the path, which is really curved. After each step the sections therefore follow the step's strains again, from their
-own previous state, in two halves that meet on a parabola through the strains at the last three equilibria. If coils or
-seats close or open, the path has a kink within the step: at worst in its middle, where it deviates from the chord by
-four times as much. This divides the law's error and the area between path and chord by 4, so that
+own previous state, in two parts. On a smooth path these are halves, which meet on the parabola with the rates e₀′ and
+e₁′ of the step's start and end: its middle deviates from the chord by h (e₀′ − e₁′)/8. The steps' tangents give these
+rates; where one is missing, as while time passes, the parabola through the strains at the last three equilibria is
+taken. Where coils or seats close or open, the path has a kink within the step. Two straight lines with these rates meet
+at the part θ of the step that fits its increment best, Δ = θ h e₀′ + (1 − θ) h e₁′, and so do the two parts, where the
+longer one of the lines ends. This divides the law's error and the area between path and chord by 4, so that
 
     s* − s ≈ 4/3 (s_finer − s)
 
@@ -14,7 +17,9 @@ is the error of the section forces. Errors that plastic flow erases are erased h
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
+from mpi4py import MPI
 
+from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.body.state import State, Where
 from coilset.model.rod.assembly import blocks
 from coilset.model.rod.elements import Element
@@ -23,7 +28,6 @@ from coilset.model.section.kinds import Sections
 
 BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
 CLOCKS = "clock", "halfway_clock"  # of the whole rod, at the end of a step, and half way along its path
-KINK = 4.0  # of the parabola's height over the chord: after steps of one size, that of a kink in the middle of this one
 
 Block = tuple[slice, Sections]  # of cells
 
@@ -38,12 +42,16 @@ class FinerPath:
             section forces.
         names: of the sections' arrays that are followed.
         element: Element, whose weights the sections have.
+        comm: MPI communicator of the rod.
     """
 
-    def __init__(self, sections: Sections, state: State, names: Iterable[str], element: Element) -> None:
-        self._state, self._strain = state, state["strain"]
+    def __init__(
+        self, sections: Sections, state: State, names: Iterable[str], element: Element, comm: MPI.Comm = MPI.COMM_SELF
+    ) -> None:
+        self._state, self._strain, self._comm = state, state["strain"], comm
         self._weights, shape = np.array(element.weights), self._strain.trial.shape
         self._increment = state.add("strain_increment", np.zeros(shape), Where.ELEMENT)
+        self._rate = state.add("strain_rate", np.zeros(shape), Where.ELEMENT)  # times the step's size; 0: not known
         self._first = state.add("first_strain_increment", np.zeros(shape), Where.ELEMENT)
         self._error = state.add("section_force_error", np.zeros(shape), Where.ELEMENT)
         self._fields = {
@@ -60,26 +68,33 @@ class FinerPath:
             self._on_the_way["clock"] = halfway.trial
         self._blocks, self._lost = list(in_blocks(sections)), False
 
-    def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, final: bool = True) -> bool:
+    def follow(
+        self,
+        s: np.ndarray,
+        ratio: float,
+        kinked: bool = False,
+        final: bool = True,
+        rate: np.ndarray | None = None,
+    ) -> bool:
         """Advance the finer path to the trial strains.
 
         Args:
             s: trial section forces, shape (cells, sections, 6), N and N mm.
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
-            kinked: whether the path has a kink within the step, at worst in its middle.
+            kinked: whether the path has a kink within the step.
             final: whether the step is committed in any case.
+            rate: of the strains at the end of the step, times its size; None if it is not known.
 
         Returns:
             False if the law found no solution on this rank: the finer path then continues from the step's own end, see
             `catch_up`, and the error is not changed.
         """
         strain, change = self._strain, self._strain.trial - self._strain.equilibrium
-        # of the path's middle from the chord's
-        bend = 0.25 * ratio / (1.0 + ratio) * (ratio * self._increment.equilibrium - change) * (KINK if kinked else 1.0)
+        middle = strain.equilibrium + self._halfway(change, ratio, rate, kinked)
         self._increment.trial[:] = change
+        self._rate.trial[:] = 0.0 if rate is None else rate
         if not self._first.equilibrium.any():
             self._first.trial[:] = change
-        middle = strain.equilibrium + 0.5 * change + bend
         if not final:
             for name in self._fields:
                 self._state.overwrite(f"finer_{name}")
@@ -88,6 +103,24 @@ class FinerPath:
         if self._lost:
             self._error.trial[:] = self._error.equilibrium
         return good
+
+    def _halfway(self, change: np.ndarray, ratio: float, end: np.ndarray | None, kinked: bool) -> np.ndarray:
+        """Strains since the start of the step where its two parts meet; collective.
+
+        Args:
+            change: of the strains in the step.
+            ratio, end, kinked: as in `follow`.
+        """
+        start, comm = ratio * self._rate.equilibrium, self._comm
+        if end is None or not sum_of_ranks(comm, float(start.any())):
+            return 0.5 * change + 0.25 * ratio / (1.0 + ratio) * (ratio * self._increment.equilibrium - change)
+        turn = start - end
+        if not kinked:
+            return 0.5 * change + 0.125 * turn
+        size, along = (sum_of_ranks(comm, float(np.vdot(turn, other))) for other in (turn, change - end))
+        part = min(max(along / size, 0.0), 1.0) if size > 0.0 else 0.5
+        away = part * (start - change) if part > 0.5 else (1.0 - part) * (change - end)
+        return part * change + away
 
     def catch_up(self) -> None:
         """Continue from the end of a step, which the sections have reached, if the law found no solution in it."""

@@ -41,6 +41,7 @@ from coilset.model.section import surface
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 
+DIFFERENCE = 1e-4  # of a step, of which the strains' rate is the difference
 EPSILON = float(np.finfo(float).eps)
 
 
@@ -244,14 +245,27 @@ class Rod(Body):
 
     def estimate_errors(self) -> None:
         """Follow every step on a finer path from now on; see Body."""
-        self._finer = FinerPath(self.sections, self.state, self._points.bearing, self.element)
+        self._finer = FinerPath(self.sections, self.state, self._points.bearing, self.element, self.comm)
 
-    def error_works(self, ratio: float, kinked: bool, final: bool) -> tuple[float, float, float, float]:
+    def error_works(
+        self, ratio: float, kinked: bool, final: bool, rate: np.ndarray | None = None
+    ) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see Body."""
         assert self._finer is not None, "estimate_errors comes before"
-        if not self._finer.follow(self.coefficients.s, ratio, kinked, final):
+        end = None if rate is None else self._strain_rate(rate)
+        if not self._finer.follow(self.coefficients.s, ratio, kinked, final, end):
             return np.nan, np.nan, np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
+
+    def _strain_rate(self, rate: np.ndarray) -> np.ndarray:
+        """Of the section strains at the trial state, from that of the local unknowns."""
+        there, strain = self._increment.copy(), self._strain.trial.copy()
+        self._increment += DIFFERENCE * rate
+        self._move()
+        found = (self._strain.trial - strain) / DIFFERENCE
+        self._increment[:] = there
+        self._move()
+        return found
 
     def resolves_time(self, fall: float) -> bool:
         """Whether the finer path resolves the error of a step in time; see Body."""

@@ -50,7 +50,7 @@ def test_steps_take_the_size_that_their_error_allows(example):
     assert factor(np.inf) == analysis.case.solver.control.steps.least_factor
     shares, asked = [8.0, 1.331, 1e-9], []
 
-    def estimate(ratio, controls):
+    def estimate(ratio, controls, rate):
         assert controls
         asked.append(ratio)
         share = shares.pop(0) if shares else 0.0

@@ -72,6 +72,32 @@ def test_error_of_section_forces_is_known(steps):
         assert estimated[0, 0, column] == pytest.approx(true[0, 0, column], rel=0.01)
 
 
+@pytest.mark.parametrize("part", [0.15, 0.5, 0.85])
+def test_a_kink_within_a_step_is_found_where_it_is(part):
+    """Flow in torsion, which ends after a part of the last step: the two parts meet at the kink, 4/3 of the error."""
+    before, behind = np.zeros((2, 1, 2, 6))
+    before[..., TWIST], behind[..., TWIST], behind[..., BENDING] = 4e-4, -1e-4, 1e-4
+    start = 5.0 * before
+    path = Path()
+    finer = follower(path)
+    path.to(start)
+    assert finer.follow(path.s, 0.0, rate=before)
+    path.state.commit()
+    path.to(start + part * before + (1.0 - part) * behind)
+    assert finer.follow(path.s, 1.0, kinked=True, rate=behind)
+    forces, known = path.s.copy(), path.state["section_force_error"].trial
+    fine = Path()
+    turns = [*np.linspace(0.0, 1.0, 101)[1:, None, None, None] * start]
+    turns += [start + share * part * before for share in np.linspace(0.0, 1.0, 101)[1:]]
+    turns += [start + part * before + share * (1.0 - part) * behind for share in np.linspace(0.0, 1.0, 101)[1:]]
+    for strain in turns:
+        fine.to(strain)
+        fine.state.commit()
+    true = (fine.s - forces)[0, 0, TWIST]
+    assert abs(true) > 0.01 * fine.s[0, 0, TWIST]
+    assert known[0, 0, TWIST] / true == pytest.approx(4.0 / 3.0, rel=0.1)
+
+
 def test_what_stays_elastic_has_no_error():
     path = Path()
     finer = follower(path)

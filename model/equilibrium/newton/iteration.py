@@ -158,10 +158,15 @@ class Iteration:
         """Why the last run ended, a Reason; positive where it converged."""
         return self.snes.getConvergedReason()
 
+    @property
+    def has_tangent(self) -> bool:
+        """Are there factors of the tangent near the state that the last run has found?"""
+        return bool(self.method.searches and self.factorisations and not self._damped)
+
     def negative_pivots(self) -> int | None:
         """Number of negative pivots of the last factors L U; None where they are not shown or not of the last solve."""
         pc = self.snes.getKSP().getPC()
-        if not self.method.searches or not self.factorisations or self._damped:  # an equilibrium needs no factors
+        if not self.has_tangent:  # an equilibrium needs no factors
             return None
         return factors.negative_pivots(pc)
 

@@ -5,6 +5,7 @@ there. The law is integrated over the whole step in any case: parts change how a
 """
 
 import logging
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -108,6 +109,21 @@ class Newton:
             self.system.augment()
             outcome = outcome + self._solve(Start(self.system.increments.copy()))
         return outcome
+
+    def rate(self, load: Load) -> PETSc.Vec | None:
+        """Derivative of the increments by the load factor at the end of a step, by the last factors; collective.
+
+        None where there are none of the true tangent: other methods, damped corrections, a start that was right.
+        """
+        iteration, X, layout = self.iteration, self.system.increments, self.system.layout
+        if not iteration.has_tangent:
+            return None
+        change, F, rate = (layout.vector() for _vector in range(3))
+        self.system.residual(X, load, 0.0, change)
+        self.system.residual(X, load, 1.0, F)
+        change.axpy(-1.0, F)
+        iteration.snes.getKSP().solve(change, rate)
+        return rate if math.isfinite(rate.norm()) else None
 
     def _in_vain(self, depths: Sequence[float]) -> bool:
         """Whether to stop augmenting, from the penetrations before each augmentation, the last one's included.

@@ -14,9 +14,10 @@ from typing import TypeVar
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.newton.newton import Newton, Start
-from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.newton.outcome import Estimate, Outcome
 from coilset.model.equilibrium.path.branch_switching import Snap
 from coilset.model.equilibrium.path.guess import Guess
+from coilset.model.equilibrium.path.next_touch import CROSSING, NEAR, RESTART, SHORT, NextTouch
 from coilset.model.equilibrium.path.stability import Stability
 from coilset.model.equilibrium.path.step_control import ON_MARK, Path, StepSizes
 from coilset.model.equilibrium.path.step_error import StepError
@@ -26,6 +27,7 @@ from coilset.model.equilibrium.system.load import Load
 log = logging.getLogger("coilset.steps")
 Reading = TypeVar("Reading")
 # what the state remembers of the last steps on a path: the guess, and the parabola of the finer path
+ELASTIC = 1e-6  # of what a step may bring in: the error of one in which no wire flows is rounding
 OF_PATH = "increments", "increments_before", "strain_increment"
 
 
@@ -65,6 +67,7 @@ class Continuation:
         self.cause: Callable[[], str] = lambda: ""
         self.steps, self.number = StepSizes(self.control), 0
         self.guess = Guess(self.system, self.control.bend)
+        self.next_touch = NextTouch(self.system)
         self._spent: list[Outcome] = []  # all solves of the step in progress
         self._unstable: PETSc.Vec | None = None  # increments of an attempt that ended unstable
 
@@ -76,7 +79,7 @@ class Continuation:
         return self._charged(self._attempt(load, starts))
 
     def _attempt(self, load: Load, starts: Iterable[Start], size: float = 0.0, accurately: bool = False) -> Outcome:
-        return self._conclude(self._stable(self._solve(load, starts), load), size, accurately)
+        return self._conclude(load, self._stable(self._solve(load, starts), load), size, accurately)
 
     def _newton(self, load: Load, start: Start) -> Outcome:
         self._spent.append(self.newton.solve(load, start))
@@ -92,18 +95,24 @@ class Continuation:
             failed_solves=len(spent) - 1 + sum(solve.failed_solves for solve in spent),
         )
 
-    def _conclude(self, outcome: Outcome, size: float, accurately: bool = False) -> Outcome:
+    def _conclude(self, load: Load, outcome: Outcome, size: float, accurately: bool = False) -> Outcome:
         """Commit or restore.
 
         Args:
+            load: of the step.
+            outcome: of its solution.
             size: length of the step, in regular steps.
             accurately: whether a step with too large an error counts as failed.
         """
+        rate = None
         if outcome.converged and self.step_error is not None:
-            outcome = self._estimated(outcome, self.step_error, size, accurately)
+            rate = None if self.step_error.takes_time() else self.newton.rate(load)
+            before = self.steps.position.before
+            estimate = self.step_error.estimate(size / before if before else 0.0, accurately, rate)
+            outcome = self._judged_by(estimate, outcome, size, accurately)
         self.guess.too_far = self.guess.probed = None
         if outcome.converged:
-            self.guess.remember()
+            self.guess.remember(rate if accurately else None)  # equal steps do not depend on estimates
             self.system.commit()
             self.negative_pivots = outcome.negative_pivots
         else:
@@ -169,9 +178,8 @@ class Continuation:
             return replace(outcome, converged=False, reason=refusal, refused=True)
         return outcome
 
-    def _estimated(self, outcome: Outcome, step_error: StepError, size: float, accurately: bool) -> Outcome:
-        before = self.steps.position.before
-        estimate = step_error.estimate(size / before if before else 0.0, accurately)
+    def _judged_by(self, estimate: Estimate, outcome: Outcome, size: float, accurately: bool) -> Outcome:
+        """Reject an equilibrium with too large an error, if steps are to be accurate."""
         outcome = replace(outcome, estimate=estimate)
         if not accurately or estimate.share <= self.control.tolerated_share or size <= self.control.finest:
             return outcome
@@ -234,7 +242,7 @@ class Continuation:
         outcome = self._solve(load, (Start(increments),))
         if outcome.converged and self.stability is not None:
             outcome = replace(outcome, negative_pivots=self.stability.negative_pivots(load))
-        return self._conclude(outcome, 0.0)
+        return self._conclude(load, outcome, 0.0)
 
     def _snap_step(self, path: Path, load: Load, start: Start) -> Outcome:
         if self.steps.stalls(path, self.system.evaluations):
@@ -272,7 +280,8 @@ class Continuation:
                 tried = f"{self.control.patience} states were tried and led less than a thousandth of the way"
                 raise path.failure(tried, "" if outcome is None else outcome.reason, self.cause())
             begun = self.steps.position
-            size = self.steps.size(path)
+            wanted = self.steps.size(path)
+            size = self._to_next_touch(path, wanted) if path.automatic else wanted
             load, length = path.load(begun.done + size), path.step_length(begun.done, size)
             if path.moment is not None:
                 self.system.pass_time(path.moment(begun.done + 0.5 * size), path.moment(begun.done + size))
@@ -289,8 +298,27 @@ class Continuation:
             if outcome.converged:
                 self.number += 1
                 self.steps.accept(path, outcome, size)
+                if size < wanted:
+                    self.steps.resize(max(self.steps.position.size, min(RESTART, wanted)))
                 return self._charged(outcome), begun.cuts
             self._cut(path, outcome, size)
+
+    def _to_next_touch(self, path: Path, size: float) -> float:
+        """Size of a step that ends just before something touches for the first time, or that crosses that; collective.
+
+        It is where the guess shows it. Rotations are no straight path for a guess, and elastic wire needs no such step.
+        """
+        position = self.steps.position
+        if not position.share > ELASTIC:
+            return size
+        guess = self.guess.along_path(path.load(position.done + size), position, path.step_length(position.done, size))
+        if guess is None or self.guess.carried:
+            return size
+        part = self.next_touch.part(guess)
+        if part == 1.0:
+            return size
+        short = SHORT * part * size
+        return short if short > NEAR else min(size, CROSSING)
 
     def _cut(self, path: Path, outcome: Outcome, size: float) -> None:
         if self.steps.cut(outcome, size):

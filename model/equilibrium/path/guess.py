@@ -9,6 +9,12 @@ is wrong by terms of third order, h r₂ alone by terms of second order. Rotatio
 neighbouring steps are nearly parallel. At a kink of the path, where the wire begins to yield or a contact closes, the
 rates differ more than they would along a smooth one, and r₂ alone is the better guess.
 
+Where the rate r at the end of the last step is known from its tangent, the parabola through both equilibria has it:
+
+    Δ = h r + (h/h₂)² (h₂ r − Δ₂),
+
+and at a kink within the last step h r alone goes on as the path does behind it.
+
 Where a head is turned, sections turn by much more than they bend, and rates are nearly constant in the sections' own
 directions, not in space. They are then carried on with the sections: with the rotations φ per length of the last step,
 by exp(φ (h + h₂)/2) from the middle of the last step, and by exp(φ (h + 2 h₂ + h₁)/2) from that of the step before.
@@ -44,10 +50,13 @@ class Guess:
         self.probed: tuple[PETSc.Vec, Load] | None = None
         self._last = system.state["increments"]
         self._before = system.state["increments_before"]
+        self._rates = dict(system.state.items()).get("rates")
 
-    def remember(self) -> None:
-        """The trial state is about to become the last equilibrium: its step follows the last one."""
+    def remember(self, rate: PETSc.Vec | None = None) -> None:
+        """The trial state is about to become the last equilibrium: its step, which ends with a `rate`, follows."""
         np.copyto(self._before.trial, self._last.equilibrium)
+        if self._rates is not None:
+            self._rates.trial[:] = 0.0 if rate is None else rate.getArray(readonly=True)
 
     def scaled_last(self, factor: float) -> PETSc.Vec:
         """The last step's increments times a factor."""
@@ -62,13 +71,13 @@ class Guess:
         extrapolation does not: that with less force out of balance is taken.
         """
         if self.too_far is None:
-            return self._along_path(load, position, size) if position.last else self._as_probed(load)
+            return self.along_path(load, position, size) if position.last else self._as_probed(load)
         guess, length = self.too_far
         shorter = guess.copy()
         shorter.scale(size / length)
-        if not position.before:
+        along = self.along_path(load, position, size)
+        if along is None:
             return shorter
-        along = self._along_path(load, position, size)
         return min(shorter, along, key=lambda start: self._out_of_balance(load, start))
 
     def _as_probed(self, load: Load) -> PETSc.Vec | None:
@@ -83,8 +92,13 @@ class Guess:
         guess.scale(load.multiple_of(probe))
         return guess
 
-    def _along_path(self, load: Load, position: Position, size: float) -> PETSc.Vec:
+    def along_path(self, load: Load, position: Position, size: float) -> PETSc.Vec | None:
+        """The guess that goes on with the last steps; None if there is none on this path; collective."""
         last, earlier = position.before, position.earlier
+        if not last:
+            return None
+        if self._rates is not None and max_of_ranks(load.layout.comm, float(self._rates.equilibrium.any())):
+            return self._with_rate(self._rates.equilibrium, load, size / last)
         guess = self._rate(self._last.equilibrium, load, 0.5 * (size + last) / last)
         guess.scale(size / last)
         if earlier:
@@ -95,6 +109,18 @@ class Guess:
             kink = difference.norm() - self.bend * guess.norm()
             if max_of_ranks(load.layout.comm, kink) <= 0.0:
                 guess.axpy(1.0, difference)
+        return guess
+
+    def _with_rate(self, rates: np.ndarray, load: Load, ratio: float) -> PETSc.Vec:
+        """The parabola with the rate at its last point; `ratio` of the step's size to that of the last one."""
+        guess = self._rate(rates, load, 0.5 * ratio)
+        bent = self._rate(self._last.equilibrium, load, 0.5 * (ratio + 1.0))
+        bent.aypx(-1.0, guess)
+        bent.scale(ratio)
+        kink = bent.norm() - self.bend * guess.norm()
+        if max_of_ranks(load.layout.comm, kink) <= 0.0:
+            guess.axpy(1.0, bent)
+        guess.scale(ratio)
         return guess
 
     def _rate(self, increments: np.ndarray, load: Load, further: float) -> PETSc.Vec:

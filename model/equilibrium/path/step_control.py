@@ -66,6 +66,7 @@ class Position:
         last: length of the last step, whose increments are the guess for the next one; 0 if there is no guess.
         before: length of the last step on this path; 0 if there is none.
         earlier: length of the step before that one on this path; 0 if there is none.
+        share: of the last step's error, see Estimate; 0 while the wire is elastic.
     """
 
     done: float = 0.0
@@ -74,6 +75,7 @@ class Position:
     last: float = 0.0
     before: float = 0.0
     earlier: float = 0.0
+    share: float = 0.0
 
 
 class StepSizes:
@@ -119,7 +121,8 @@ class StepSizes:
         """Stand at the end of a step of this size."""
         last = 0.0 if outcome.left_branch else path.step_length(self.position.done, size)
         done, following = self.position.done + size, self._following(path, outcome, size)
-        self.position = Position(done, following, 0, last, last, self.position.before if last else 0.0)
+        before, share = self.position.before, 0.0 if outcome.estimate is None else outcome.estimate.share
+        self.position = Position(done, following, 0, last, last, before if last else 0.0, share)
 
     def cut(self, outcome: Outcome, size: float) -> bool:
         """Make a step of this size, which failed, shorter; is it still as long as a step must be?"""

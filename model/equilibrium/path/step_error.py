@@ -18,6 +18,7 @@ import math
 
 import numpy as np
 from mpi4py import MPI
+from petsc4py import PETSc
 
 from coilset.model.body.state import Where
 from coilset.model.equilibrium.newton.outcome import Estimate
@@ -45,28 +46,32 @@ class StepError:
     def __init__(self, control: Heads, accuracy: float, steps: StepControl) -> None:
         self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, control.system.body
         self._body.estimate_errors()
-        self._memory = control.system.state.add("step_error", np.zeros(3), Where.SHARED)
+        system = control.system
+        self._memory = system.state.add("step_error", np.zeros(3), Where.SHARED)
+        system.state.add("rates", np.zeros(system.layout.size_local), Where.UNKNOWN)  # at the end of the last step
 
-    def estimate(self, ratio: float, controls: bool) -> Estimate:
+    def estimate(self, ratio: float, controls: bool, rate: PETSc.Vec | None = None) -> Estimate:
         """Judge the trial state, once, before it is committed or given up; collective.
 
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
-            controls: whether the step size is controlled by it. A kink then counts as in the middle of the step. In
-                equal steps it is anywhere, and the errors of many steps would not add up as those of the worst case.
+            controls: whether the step size is controlled by it. A kink then counts. In equal steps the errors of many
+                kinks would not add up as those of the worst case.
+            rate: of the increments at the end of the step, see `Newton.rate`; None if it is not known.
         """
         control, comm = self.control, self.control.system.comm
         memory, last = self._memory.trial, self._memory.equilibrium
         memory[CLOSED] = control.system.last.closed
         kinked = controls and memory[CLOSED] != last[CLOSED]
-        works = self._body.error_works(ratio, bool(kinked), final=not controls)
+        along = None if rate is None else control.system.with_ghosts(rate.getArray(readonly=True))
+        works = self._body.error_works(ratio, bool(kinked), not controls, along)
         if comm.size > 1:
             works = tuple(comm.allreduce(np.array(works)).tolist())
         (start, before), (end, force) = control.measured("equilibrium"), control.measured("trial")
         travel = end - start
         memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
         still, none = abs(travel) <= STILL * control.free_length, greatest <= ROUNDING * self._body.axial_force
-        if still or none or (self._takes_time() and abs(force - before) <= STILL_FORCE * greatest):
+        if still or none or (self.takes_time() and abs(force - before) <= STILL_FORCE * greatest):
             return self._in_time(works, greatest, float(last[FIRST]))
         memory[FIRST] = last[FIRST] or travel
         error, new = works[0] / travel, works[1] / travel
@@ -89,14 +94,14 @@ class StepError:
         allowed = self.steps.step_share * self.accuracy * greatest
         return max(abs(new) / allowed, abs(left) / (allowed * min(max(rest, self.steps.least_rest), 1.0)))
 
-    def _takes_time(self) -> bool:
+    def takes_time(self) -> bool:
         """Does time pass in the trial step?"""
         state = self.control.system.state
         return "clock" in state and not np.array_equal(state["clock"].trial, state["clock"].equilibrium)
 
     def _in_time(self, works: tuple[float, ...], greatest: float, first: float) -> Estimate:
         """A held spring is deformed by no travel of its own; the first step of all shows what a travel does."""
-        if greatest <= ROUNDING * self._body.axial_force or first == 0.0 or not self._takes_time():
+        if greatest <= ROUNDING * self._body.axial_force or first == 0.0 or not self.takes_time():
             return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
         share = self._share(0.0, works, first, greatest)
         if math.isnan(share):
