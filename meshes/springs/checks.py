@@ -37,7 +37,7 @@ def refuse(spring: "Spring", place: str | None = None, file: str = "", wound_sol
         spring: `Spring`.
         place: reported instead of the fault's own, for a spring not defined by drawing entries.
         file: the file that the spring came from.
-        wound_solid: whether it is pulled only, so that its coils may touch from the start.
+        wound_solid: whether it is pulled or turned, so that its coils may touch from the start.
     """
     for fault in faults(spring, wound_solid):
         raise InputError(fault.text, fault.place if place is None else place, file)
@@ -96,5 +96,6 @@ def _block(spring: "Spring") -> Iterator[Fault]:
         yield Fault(
             "spring",
             f"there is no travel: the free length is {spring.free_length:.4g} mm, the block "
-            f"length {spring.block_height:.4g} mm; wind it longer, or give the initial_tension of an extension spring",
+            f"length {spring.block_height:.4g} mm; wind it longer, or give the initial_tension of an extension spring, "
+            "or arms",
         )

@@ -194,9 +194,10 @@ class SpringSpec(Strict):
         return self._refuse(built)
 
     def _refuse(self, spring: Spring, wound_solid: bool = False) -> Spring:
-        """Reject impossible springs; faults of the diameter are reported at the entry that gives it."""
+        """Reject impossible springs; faults of the diameter are reported at the entry that gives it. Coils of a torsion
+        spring may touch."""
         try:
-            return self._with_tails(refuse(spring, wound_solid=wound_solid))
+            return self._with_tails(refuse(spring, wound_solid=wound_solid or self.arms is not None))
         except InputError as error:
             place = error.place.replace("mean_diameter", self.diameter_entry)
             raise InputError(error.problem, place, error.file) from None

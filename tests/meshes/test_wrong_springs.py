@@ -116,7 +116,7 @@ WRONG = [
     (
         {"pitch": 5.0},
         "spring: there is no travel: the free length is 35 mm, the block length 35 mm; wind it longer, or give the "
-        "initial_tension of an extension spring",
+        "initial_tension of an extension spring, or arms",
     ),
     (
         {"free_length": 80.0},

@@ -144,3 +144,21 @@ def test_friction_on_the_arbor_takes_part_of_the_torque():
     assert 0.3 < lost / (μ * pressed * 0.5 * arbor) < 1.0
     assert abs(seats.top.moment_z_Nmm) > abs(seats.bottom.moment_z_Nmm)
     assert max(seats.imbalance_N, seats.imbalance_Nmm / arbor) < 1e-7 * abs(seats.top.moment_z_Nmm) / arbor
+
+
+def test_coils_that_are_wound_onto_each_other_rub():
+    """Heads that keep the length press them on each other as they are wound further: friction adds as much torque on
+    the way as it takes on the way back, 1.5 % at μ = 0.3. Without it there is one torque for a rotation."""
+    arms = {"bottom": {"length": 20.0}, "top": {"length": 20.0}}
+    spring = {"wire_diameter": WIRE, "mean_diameter": 30.0, "turns": 2.5, "pitch": WIRE, "arms": arms}
+    loading = [{"to": {"travel": 0, "top": {"turn": turn}}, "steps": steps} for turn, steps in ((20.0, 2), (10.0, 1))]
+    mesh = {"elements_per_turn": 10, "section": {"radial": 3, "angular": 8}}
+    torques = []
+    for contact in ({}, {"friction": {"coils": 0.3}}):
+        entries = {"spring": spring, "heads": {"top": {"sideways": "free"}}, "mesh": mesh, "contact": contact}
+        analysis = Analysis(check(data({"turn": 1.0}, **entries) | {"loading": loading}), MPI.COMM_SELF)
+        torques.append([step.torque_Nmm for step in analysis.run().steps])
+    (there, _, back), (more, _, less) = torques
+    assert back == pytest.approx(there, rel=1e-6)
+    assert more - there == pytest.approx(there - less, rel=0.05)
+    assert more - there > 0.01 * there
