@@ -25,8 +25,9 @@ SLENDERNESS = 1.6  # points over the height for each of those across it
 DEGREE = 6  # of the polynomials of the warping: the torsional stiffness is 2e-4 too high at half of a disk
 RINGS, ALONG, LEAST_ALONG = 12, 24, 6  # Gauss points from the centre line to the surface, and along pieces of it
 # Least points on a straight and on a curved piece, and rings that must be left. Two points on the corner of a rectangle
-# made its rate 0.16 % too high and the shear at the inside up to 4 %, whatever the polynomials.
-ENOUGH = ((3, 3, 4), (1, 2, 3))
+# made its rate 0.16 % too high and the shear at the inside up to 4 %, whatever the polynomials. Those of degree 8 need
+# five on a straight piece: with four the residual shear of a sharp rectangle is 30 % off.
+ENOUGH = ((5, 3, 6), (3, 3, 4), (1, 2, 3))
 ACROSS_RING = 2.5  # square of the points along a ring over all: 20 of 160
 ON_RAY = 1e-9  # of a side, by which a ray through its end may miss it
 LEAST_VIEW = 1e-3  # of the greatest |b × b′| along a boundary: below it its origin is too near to it or outside
