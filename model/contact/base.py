@@ -186,6 +186,7 @@ class Contact(ABC):
         name: for labels.
         end: the rigid body that presses on the wire: seat `bottom` or `top`, `arbor` or `sleeve`; None between coils.
         needs_rotations: whether it needs `TrialPositions.rotations`.
+        has_potential: whether its stiffness is symmetric.
         points: the wire's points on which it acts, which `Contribution.point` counts; None of a kind without.
         lengths: length of wire assigned to each of these, shape (m,), mm.
         memory: arrays that it carries from one equilibrium to the next; the owner of the state commits and restores
@@ -201,6 +202,7 @@ class Contact(ABC):
     name: str
     end: str | None = None
     needs_rotations: bool = False
+    has_potential: bool = True
     points: WirePoints | None = None
     lengths: np.ndarray = np.empty(0)
     memory: Memory | None = None

@@ -10,6 +10,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS, Contact
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine, WirePoints
+from coilset.model.contact.faces import FacedCoils, FacedSeat, seat_arms
 from coilset.model.contact.friction import CoilFriction, GuideFriction, SeatFriction
 from coilset.model.contact.gap import Gaps
 from coilset.model.contact.hold import Groove, Guide, Mount, Support
@@ -55,7 +56,10 @@ def build_contacts(
     points = CentreLine(turns, radius, lengths).points()
     contacts: list[Contact] = []
     if contact.coils == "closest":
-        contacts.append(Coils(points, stations, bedding, onset, spring.section))
+        if spring.section is None:
+            contacts.append(Coils(points, stations, bedding, onset))
+        else:
+            contacts.append(FacedCoils(points, stations, bedding, onset, spring.section))
     else:
         contacts.append(gaps_one_turn_apart(turns, radius, lengths, bedding, onset))
     if seats is not None:
@@ -140,10 +144,14 @@ def build_seat(
     for turns, entry in ((side.turns, f"seats.{end}.turns"), (seats.groove, "seats.groove")):
         if turns is not None and turns > spring.turns:
             raise InputError(f"{turns:g}: the spring has {spring.turns:g} turns only", entry)
-    reach = spring.seat_distance(points.turns, end)
-    contacts: list[Contact] = [
-        Seat(end, points, reach, stations, start, bedding, onset, side.slope, side.turns or 0.0, side.moves or driven)
-    ]
+    reach, step, moves = spring.seat_distance(points.turns, end), side.turns or 0.0, side.moves or driven
+    if spring.section is None or side.slope or moves:
+        contacts: list[Contact] = [
+            Seat(end, points, reach, stations, start, bedding, onset, side.slope, step, moves),
+        ]
+    else:
+        arms = seat_arms(spring.section, reach, points.radius, 1.0 if end == "bottom" else -1.0)
+        contacts = [FacedSeat(end, points, reach, stations, start, bedding, onset, arms, step)]
     if seats.hold == "groove":
         contacts.append(Groove(end, points, seats.groove_turns, stations, bedding, start))
     if side.moves:

@@ -121,27 +121,30 @@ class Coils(Contact):
         """`search`, or what the evaluation of this very trial state has found."""
         return self._last[1] if self._last is not None and self._last[0] is trial else self.search(trial)
 
-    def search(self, trial: TrialPositions) -> Pressed:
+    def search(self, trial: TrialPositions, lift: float = 0.0) -> Pressed:
         """Pairs in contact, with ξ and gaps, their offsets, and the points' positions; these only if there are pairs.
+
+        Those whose gaps are smaller than `lift`, mm, up to the skin, count as in contact.
 
         Nothing is sought while no two points can have come closer by the gap that was found clear. The weights of a
         point's stations add up to 1: it moves against another by no more than `amplification` times the diagonal of the
         box around the stations' motions. Pairs that have no station of this rank are left to the others.
         """
         offsets = self.multiplier_offset
-        margin = greatest(offsets)
+        margin = greatest(offsets) + lift
         if self._clear is not None:
             there, clearance = self._clear
             if self._amplification * moved(there, trial) < clearance - margin:
                 return NO_PAIR
         pair, where, p = self.near(trial, margin + self._skin)
         offset = np.empty(len(pair))
-        count, least = keep_pressing(self.points.turns, self.points.line.turns, offsets, pair, where, offset)
+        raised = offsets + lift if lift else offsets
+        count, least = keep_pressing(self.points.turns, self.points.line.turns, raised, pair, where, offset)
         clearance, self._clear = min(margin + self._skin, least), None
         if clearance > margin:
             self._clear = TrialPositions(trial.x.copy(), trial.seats, None, trial.known), clearance
             return NO_PAIR
-        pair, where, offset = pair[:count], where[:count], offset[:count]
+        pair, where, offset = pair[:count], where[:count], offset[:count] - lift
         if trial.known is not None:
             own, points = trial.known.own, self.points
             ours = (own[points.stations[pair[:, 0]]] | own[points.line.stations[pair[:, 1]]]).any(axis=1)

@@ -58,6 +58,7 @@ class Friction(Contact):
     """
 
     needs_rotations = True
+    has_potential = False
     memory: Memory
 
     def __init__(self, normal: Seat | Guide | Coils, mu: float, stations: np.ndarray, seats: np.ndarray):

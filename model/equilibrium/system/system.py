@@ -214,7 +214,7 @@ class System:
     @property
     def is_symmetric(self) -> bool:
         """Is the tangent symmetric in equilibrium? Friction has no potential."""
-        return not (self.contacts and self.touching.need_rotations)
+        return all(contact.has_potential for contact in self.contacts)
 
     @property
     def touches(self) -> bool:

@@ -9,8 +9,7 @@ import numpy as np
 
 from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
-from coilset.model.contact.bearing import bearing_on_seat, pressures_on, turns_without
-from coilset.model.contact.resultants import Wrench
+from coilset.model.contact.resultants import Wrench, bearing_on_seat, pressures_on, turns_without
 from coilset.model.equilibrium.system.heads import Heads
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
