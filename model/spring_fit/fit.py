@@ -1,8 +1,9 @@
 """Least squares of a wire's constants to presses of springs.
 
 The uniform rod searches; then whole rods of the constants found say what it lacks at each reading (ends that close,
-contacts, the stresses of coiling), and it searches again, until the constants stay. The search ends where the whole
-rod's curves are those that fit.
+contacts, the stresses of coiling), and it searches again, until the constants stay. Whole rods on a coarse mesh say at
+first what each constant changes; the search ends where the curves of the whole rod on the mesh of the case are those
+that fit.
 """
 
 import itertools
@@ -15,19 +16,20 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.spring_fit import rods
 from coilset.model.spring_fit.intervals import Interval, correlation, intervals, minimum
-from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
+from coilset.model.spring_fit.laws import CONSTANTS, Form
 from coilset.model.spring_fit.model import TESTER, Errors, Model, names
 from coilset.model.spring_fit.pressing import Pressing
 from coilset.model.standards.wires.law import case_law, hottest
 from coilset.model.uniform_coil.equivalent import coil
 
 ROUNDS = 10
-SETTLED = 0.2  # squared standard deviations by which the last search, or the last whole rods, may have come nearer
+SETTLED = (
+    2.0  # squared standard deviations by which the last search may have moved: slopes are nearly those of whole rods
+)
 STARTS = {"yield_stress": (0.3, 0.55, 0.8), "rise": (0.15, 0.6), "rate": (60.0, 300.0, 1200.0)}
 SHARE = 0.2  # to begin with: little flows backwards
-SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides, at first and at the end
+SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run where they differ
 CORRELATED = 0.4  # of residuals that follow each other, from which on they are no scatter
 POSSIBLE = {
     **dict.fromkeys(("G", "yield_stress", "rise", "rate", "compliance"), (0.0, math.inf)),
@@ -85,14 +87,8 @@ class SpringFit:
         return told + [self.misfit] * bool(self.misfit)
 
     def material(self, name: str) -> dict[str, Any]:
-        """Content of a material file; runs the presses once more, for the plastic work that they reached.
-
-        Raises:
-            SolveError: if a whole rod finds no equilibrium.
-        """
-        model, trial = self.model, self.model.form.material(self.values, TRIAL)
-        runs = (rods.steps(one, trial, model.ends(self.x, k)) for k, one in enumerate(model.pressings))
-        work = max(step.plastic_work_max_N_per_mm2 for run in runs for step in run)
+        """Content of a material file."""
+        model = self.model
         files = ", ".join(one.name for one in model.pressings)
         temperature, case = model.form.temperature, model.pressings[0].case
         hot = None if isinstance(case.material, str) else hottest(case.material.wire, temperature)
@@ -102,7 +98,7 @@ class SpringFit:
             "description": f"Constants identified from presses of springs ({model.form.name})",
             "source": f"coilset material fit --spring: {files}",
             "validity": {
-                "plastic_work": math.ceil(100.0 * max(work, 1.0)) / 100.0,
+                "plastic_work": math.ceil(100.0 * max(model.work, 1.0)) / 100.0,
                 "remark": "; ".join([*self.sentences, *more]),
                 "temperature": temperature,
             },
@@ -159,18 +155,15 @@ def fit_springs(
     if model.readings < len(model.fitted):
         problem = f"{model.readings} readings cannot determine {len(model.fitted)} constants"
         raise InputError(f"{problem}; give more, or some constants by --known", "--spring")
-    held = [k for k, name in enumerate(model.fitted) if name == "share"]
     if like is not None:
         old = like.model
         model = replace(model, missing=old.missing, slopes_missing=old.slopes_missing, weights=old.weights)
-        model, x, found, rounds = _settle(model, like.x, ())
+        x, before = minimum(model, like.x)[0], 0
     else:
-        model, x, found, rounds = _settle(model, _first(model, law.G, held), held)
-    if held and like is None:
-        model, x, found, more = _settle(model, x, ())
-        rounds += more
+        model, x, before = _begun(model, law.G)
+    model, x, found, rounds = _settled(model, x)
     within = intervals(model, x, found, model.slopes(x))
-    return _result(model, *_central(model, x, found, within), within, rounds)
+    return _result(model, *_central(model, x, found, within), within, before + rounds)
 
 
 def _central(
@@ -213,36 +206,38 @@ def _check(known: Mapping[str, float], tester: Sequence[str]) -> None:
             raise InputError(f"G is in MPa, about 80000 for steel, not {value:g}", "--known")
 
 
-def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np.ndarray, OptimizeResult, int]:
-    """Whole rods and search in turn, until the constants stay; with the number of rounds.
+def _begun(model: Model, G: float) -> tuple[Model, np.ndarray, int]:
+    """What coarse whole rods change, by each constant and at several shares; with the number of rounds.
 
-    Whole rods of all shares are run where it begins and ends; in between, one of the present constants shifts them.
+    Raises:
+        SolveError: if a whole rod finds no equilibrium.
+    """
+    held = [] if model.share is None else [model.share]
+    x = _first(model, G, held)
+    for slopes in (False, True):
+        model = model.corrected(x, slopes)
+        x, _ = minimum(model, x, held, fine=False)
+    if held:
+        model = model.with_shares(x, SHARES)
+        x, _ = minimum(model, x, fine=False)
+    return model, x, 2 + len(held)
 
-    Args:
-        model, x: unknowns to begin with.
-        held: numbers of those that stay: the share until all else is found, then nothing.
+
+def _settled(model: Model, x: np.ndarray) -> tuple[Model, np.ndarray, OptimizeResult, int]:
+    """Whole rods on the mesh of the case and search in turn, until the constants stay; with the number of rounds.
 
     Raises:
         SolveError: if the constants do not come to rest.
     """
-    nearest, settled = {True: math.inf, False: math.inf}, False
+    nearest = math.inf
     for number in range(1, ROUNDS + 1):
-        all_shares = settled or len(model.missing) == 1
-        if model.share is None or held:
-            model = model.corrected(x, slopes=number == 2)
-        elif all_shares:
-            model = model.with_shares(x, (*SHARES, float(x[model.share])))
-        else:
-            x = minimum(model, x)[0] if number == 1 else x
-            model = model.shifted(x)
-        before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x, held)
+        model = model.shifted(x)
+        before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x)
         small = SETTLED * max(_scatter(model, found), 1.0) ** 2
-        settled = (number > 2 or not held) and before - 2.0 * found.cost < small
-        if model.share is not None and not held:  # whole rods come no nearer: below a threshold no share changes them
-            settled |= nearest[all_shares] - before < small
-        if settled and (all_shares or held or model.share is None):
+        # whole rods come no nearer: below a threshold no share changes them
+        if before - 2.0 * found.cost < small or (model.share is not None and nearest - before < small):
             return model, x, found, number
-        nearest[all_shares] = min(nearest[all_shares], before)
+        nearest = min(nearest, before)
     raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")
 
 
@@ -256,7 +251,7 @@ def _first(model: Model, G: float, held: Sequence[int]) -> np.ndarray:
         values |= {"rate": model.form.rate_at(rate, stress), "friction": 0.0, "compliance": 0.0, "offset": 0.0}
         starts.append(model.start(values | dict(model.known)))
     starts.sort(key=lambda x: float(np.sum(model.residual(x) ** 2)))
-    return min((minimum(model, x, held) for x in starts[:2]), key=lambda one: one[1].cost)[0]
+    return min((minimum(model, x, held, fine=False) for x in starts[:2]), key=lambda one: one[1].cost)[0]
 
 
 def _stress(one: Pressing, G: float) -> float:

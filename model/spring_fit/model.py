@@ -11,10 +11,12 @@ its friction makes the force F (1 ± μ), more when pressed and less when releas
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from coilset.model.base.errors import InputError, SolveError
+from coilset.model.material.law.law import Law
 from coilset.model.spring_fit import rods
 from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
 from coilset.model.spring_fit.pressing import Pressing
@@ -35,7 +37,7 @@ BOUNDS = {
 TURNS = 2.0  # mm, within which the travel of a turn is sought
 CLOSED = 3.0  # times the least rate so far: beyond it coils have closed, and the wire is not what gives way
 LEAST = 0.005  # of the maximum force, below which a reading is of a spring that stands free
-SAME = 0.005  # difference of shares below which one whole rod counts for both
+SAME = 0.05  # of the tester's errors, below which one whole rod counts for two shares
 HOPELESS = 1e6  # residuals where there is no equilibrium
 
 
@@ -68,6 +70,7 @@ class Model:
         weights: standard deviation of each reading of each pressing, N, or mm of lengths; infinite if it is not used.
         missing: what the whole rod has more than the uniform one, at several unknowns, in ascending shares.
         slopes_missing: its derivatives by the unknowns, but not by the share, shape (readings, unknowns).
+        work: greatest plastic work per volume of the last whole rods, N/mm².
     """
 
     pressings: tuple[Pressing, ...]
@@ -78,6 +81,7 @@ class Model:
     weights: tuple[np.ndarray, ...] = ()
     missing: tuple[Missing, ...] = ()
     slopes_missing: tuple[np.ndarray, ...] = ()
+    work: float = 0.0
 
     @property
     def turns(self) -> list[tuple[int, int]]:
@@ -140,8 +144,12 @@ class Model:
         Raises:
             SolveError: if there is no equilibrium.
         """
-        law = self.form.law(self.values(x))
-        return [self.predicted(x, k, rods.uniform(one, law, self.ends(x, k))) for k, one in enumerate(self.pressings)]
+        values = self.values(x)
+        constants = tuple(values[name] for name in CONSTANTS)
+        return [
+            self.predicted(x, k, _uniform(one, self.form, constants, tuple(self.ends(x, k))))
+            for k, one in enumerate(self.pressings)
+        ]
 
     @property
     def share(self) -> int | None:
@@ -183,7 +191,7 @@ class Model:
         return np.array(columns).T
 
     def corrected(self, x: np.ndarray, slopes: bool) -> "Model":
-        """The model with what whole rods of these constants have more, and the weights that follow from their rates.
+        """The model with what coarse whole rods of these constants have more, and the weights that follow from them.
 
         Args:
             x: unknowns.
@@ -192,7 +200,7 @@ class Model:
         Raises:
             SolveError: if a whole rod finds no equilibrium.
         """
-        rods_here = self._whole(x)
+        rods_here, _ = self._whole(x, rods.COARSE)
         more = self._difference(x, rods_here)
         known = [one.copy() for one in self.slopes_missing]
         for k, name in enumerate(self.fitted if slopes else ()):
@@ -201,35 +209,51 @@ class Model:
             step = self._step(x, k)
             moved = x.copy()
             moved[k] += step
-            for one, here, there in zip(known, more, self._difference(moved, self._whole(moved)), strict=True):
-                one[:, k] = (there - here) / step
+            there = self._difference(moved, self._whole(moved, rods.COARSE)[0])
+            for one, here, after in zip(known, more, there, strict=True):
+                one[:, k] = (after - here) / step
         weights = tuple(self._weights(*pair) for pair in zip(self.pressings, rods_here, strict=True))
         return replace(self, missing=(Missing(x.copy(), more),), slopes_missing=tuple(known), weights=weights)
 
     def with_shares(self, x: np.ndarray, shares: Sequence[float]) -> "Model":
-        """The model with what whole rods of these shares have more, all at the same other unknowns.
+        """The model with what coarse whole rods of these shares have more, all at the same other unknowns.
 
         One found at other constants beside one found at these would make the share seem determined: below its
-        threshold all have the same.
+        threshold all have the same. Where the uniform rods of neighbouring shares read the same, one whole rod
+        counts for them.
 
         Args:
             x: other unknowns.
-            shares: of kinematic hardening; of those that are nearly the same the last counts.
+            shares: of kinematic hardening.
 
         Raises:
             SolveError: if a whole rod finds no equilibrium.
         """
         assert self.share is not None
         found: list[Missing] = []
-        for k, share in enumerate(shares):
-            if all(abs(share - later) > SAME for later in shares[k + 1 :]):
-                at = x.copy()
-                at[self.share] = share
-                found.append(Missing(at, self._difference(at, self._whole(at))))
-        return replace(self, missing=tuple(sorted(found, key=lambda one: float(one.at[self.share or 0]))))
+        last: list[np.ndarray] = []
+        for share in sorted(shares):
+            at = x.copy()
+            at[self.share] = share
+            ours = self.uniform(at)
+            if last and self._alike(ours, last):
+                found.append(Missing(at, found[-1].more))
+                continue
+            last = ours
+            found.append(Missing(at, self._difference(at, self._whole(at, rods.COARSE)[0])))
+        return replace(self, missing=tuple(found))
+
+    def _alike(self, ours: Sequence[np.ndarray], others: Sequence[np.ndarray]) -> bool:
+        """Whether no tester would tell these readings from each other."""
+        return all(
+            float(np.max(np.abs(one - other) / weight)) < SAME
+            for one, other, weight in zip(ours, others, self.weights, strict=True)
+        )
 
     def shifted(self, x: np.ndarray) -> "Model":
-        """The model that is the whole rod's at these unknowns; what shares have more than others stays, for now.
+        """The model that is the whole rod's, on the mesh of the case, at these unknowns.
+
+        What shares have more than others and the slopes stay.
 
         Args:
             x: unknowns.
@@ -237,18 +261,20 @@ class Model:
         Raises:
             SolveError: if the whole rod finds no equilibrium.
         """
-        assert self.share is not None
-        now, missing = self._difference(x, self._whole(x)), []
+        branches, work = self._whole(x, rods.USUAL)
+        now, missing = self._difference(x, branches), []
         for one in self.missing:
             at = x.copy()
-            at[self.share] = one.at[self.share]
+            if self.share is not None:
+                at[self.share] = one.at[self.share]
             more = tuple(self.lacking(at, k) + here - self.lacking(x, k) for k, here in enumerate(now))
             missing.append(Missing(at, more))
-        return replace(self, missing=tuple(missing))
+        return replace(self, missing=tuple(missing), work=work)
 
-    def _whole(self, x: np.ndarray) -> list[list[Branch]]:
+    def _whole(self, x: np.ndarray, fine: rods.Steps) -> tuple[list[list[Branch]], float]:
         material = self.form.material(self.values(x), TRIAL)
-        return [rods.whole(one, material, self.ends(x, k)) for k, one in enumerate(self.pressings)]
+        runs = [rods.whole(one, material, self.ends(x, k), fine) for k, one in enumerate(self.pressings)]
+        return [branches for branches, _ in runs], max(work for _, work in runs)
 
     def _difference(self, x: np.ndarray, whole: Sequence[Sequence[Branch]]) -> tuple[np.ndarray, ...]:
         """Readings by whole rods less those by uniform ones."""
@@ -297,3 +323,14 @@ def names(form: Form, known: Mapping[str, float], tester: Sequence[str]) -> tupl
     if known.get("rise") == 0.0:
         constants = [name for name in constants if name not in ("rate", "share")]
     return (*constants, *tester)
+
+
+@lru_cache(maxsize=32)
+def _uniform(one: Pressing, form: Form, constants: tuple[float, ...], ends: tuple[float | None, ...]) -> list[Branch]:
+    """A press by the uniform rod; kept, as a slope by one unknown changes few of them."""
+    return rods.uniform(one, _law(form, constants), ends)
+
+
+@lru_cache(maxsize=2)
+def _law(form: Form, constants: tuple[float, ...]) -> Law:
+    return form.law(dict(zip(CONSTANTS, constants, strict=True)))

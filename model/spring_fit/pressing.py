@@ -19,7 +19,7 @@ RELEASED = 0.03  # of the maximum force, below which a spring counts as released
 FEWEST = 8  # readings of a curve
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pressing:
     """Readings of one spring that is pressed and released, once or several times.
 

@@ -1,11 +1,11 @@
 """A press by the uniform rod, in milliseconds, and by the whole rod with its ends and contacts."""
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,21 @@ from coilset.model.spring_fit.pressing import Pressing
 from coilset.model.uniform_coil.equivalent import coil
 from coilset.model.uniform_coil.rod import UniformState, press
 
-PRESS, RELEASE = 24, 8  # steps of a branch
+PRESS, RELEASE = 24, 8  # steps of a branch of the uniform rod
+LAST = 0.15  # of the force: end coils open in the last part of a release, which has steps of its own
+
+
+class Steps(NamedTuple):
+    """How finely a rod follows a press: steps down, back, over the last part, and its mesh (the case's if None)."""
+
+    press: int
+    back: int
+    last: int
+    mesh: Mapping[str, Any] | None = None
+
+
+USUAL = Steps(24, 6, 6)
+COARSE = Steps(12, 3, 3, {"elements_per_turn": 8, "section": {"radial": 4, "angular": 12}})  # to begin with
 
 
 @dataclass(frozen=True)
@@ -93,37 +107,55 @@ def uniform(pressing: Pressing, law: Law, ends: Sequence[float | None]) -> list[
     return found
 
 
-def steps(pressing: Pressing, material: Mapping[str, Any], ends: Sequence[float | None]) -> Sequence[Step]:
-    """Steps of the rod between its seats, with its contacts and the past of its wire.
+def steps(
+    pressing: Pressing, material: Mapping[str, Any], ends: Sequence[float | None], fine: Steps = USUAL
+) -> list[list[Step]]:
+    """Steps of each branch of the rod between its seats, with its contacts and the past of its wire.
 
     Args:
         pressing: of which spring.
         material: content of a material file.
         ends: as in `uniform`.
+        fine: how finely.
 
     Raises:
         SolveError: if it finds no equilibrium.
         InputError: if the spring cannot go there.
     """
-    furthest = pressing.furthest
-    loading = [
-        {"to": {"force": 0.0} if end is None else {"travel": min(end, furthest)}, "steps": RELEASE if k % 2 else PRESS}
-        for k, end in enumerate(ends)
-    ]
+    program = list(_program(pressing, ends, fine))
     with tempfile.TemporaryDirectory(prefix="coilset-") as folder:
         file = Path(folder, "material.yaml")
         file.write_text(yaml.safe_dump(dict(material)), encoding="utf-8")
-        entries = {"material": str(file), "loading": loading, "accuracy": "none", "rates_at": []}
-        case = check_entries(pressing.case.model_dump(mode="json") | entries, Case)
-        return Analysis(case, MPI.COMM_SELF, detailed=False).run().steps
+        loading = [phase for _, phase in program]
+        entries = pressing.case.model_dump(mode="json")
+        entries |= {"material": str(file), "loading": loading, "accuracy": "none", "rates_at": []}
+        if fine.mesh is not None and entries["mesh"]["section"]["kind"] != "warping":
+            entries["mesh"] = fine.mesh
+        run = Analysis(check_entries(entries, Case), MPI.COMM_SELF, detailed=False).run().steps
+    return [[step for step in run if program[step.phase][0] == branch] for branch in range(len(ends))]
 
 
-def whole(pressing: Pressing, material: Mapping[str, Any], ends: Sequence[float | None]) -> list[Branch]:
-    """The press by the whole rod; see `steps`."""
-    run = steps(pressing, material, ends)
+def _program(pressing: Pressing, ends: Sequence[float | None], fine: Steps) -> Iterator[tuple[int, dict[str, Any]]]:
+    """The branch of each phase, and the phase."""
+    furthest = pressing.furthest
+    for branch, end in enumerate(ends):
+        if end is not None:
+            yield branch, {"to": {"travel": min(end, furthest)}, "steps": fine.back if branch % 2 else fine.press}
+            continue
+        top = LAST * float(np.max(pressing.force[pressing.branch == branch - 1], initial=0.0))
+        if top > 0.0:  # free lengths have no force
+            yield branch, {"to": {"force": top}, "steps": fine.back}
+        yield branch, {"to": {"force": 0.0}, "steps": fine.last}
+
+
+def whole(
+    pressing: Pressing, material: Mapping[str, Any], ends: Sequence[float | None], fine: Steps = USUAL
+) -> tuple[list[Branch], float]:
+    """The press by the whole rod, and the greatest plastic work per volume, N/mm²; see `steps`."""
+    run = steps(pressing, material, ends, fine)
     found, start = [], (0.0, 0.0)
-    for number in range(len(ends)):
-        points = [start, *((step.travel_mm, step.force_N) for step in run if step.phase == number)]
+    for branch in run:
+        points = [start, *((step.travel_mm, step.force_N) for step in branch)]
         found.append(_branch(*zip(*points, strict=True)))
         start = points[-1]
-    return found
+    return found, max(step.plastic_work_max_N_per_mm2 for branch in run for step in branch)

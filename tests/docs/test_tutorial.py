@@ -93,7 +93,7 @@ def test_one_press_to_a_reliable_set():
     measured = float(re.findall(r"set_mm,([\d.]+)", (third / "measured.csv").read_text())[0])
     assert f"set_mm,{measured}," in page
     assert f"sets by {measured} mm" in page
-    assert f"prediction was {100 * (1 - first / measured):.1f} % short" in page
+    assert f"prediction was {100 * (first / measured - 1):.1f} % too much" in page
     assert f"off by {100 * (1 - second / measured):.1f} %" in page
     settings = [f"material={third / 'my_wire.yaml'}", "loading.0.to={height: 17}", "accuracy=none"]
     settings += ["loading.0.steps=24", "loading.1.steps=8"]

@@ -25,8 +25,8 @@ from coilset.verification.references import heun
 def by_uniform_rods(monkeypatch):
     """Whole rods are replaced by uniform ones: the search alone, in seconds."""
 
-    def whole(pressing, material, ends):
-        return rods.uniform(pressing, Law(MaterialFile.model_validate(material)), ends)
+    def whole(pressing, material, ends, fine):
+        return rods.uniform(pressing, Law(MaterialFile.model_validate(material)), ends), 1.0
 
     monkeypatch.setattr(rods, "whole", whole)
 
@@ -179,7 +179,7 @@ def test_the_command_fits_whole_rods_to_lengths(tmp_path):
     tops = [10.0, 15.0, 20.0, 25.0]
     none = study.pressed(case, [1.0], uniform=True)
     ends = [end for top in tops for end in (top, None)]
-    free = [branch.free for branch in rods.whole(none, form.material(study.TRUE, TRIAL), ends)[1::2]]
+    free = [branch.free for branch in rods.whole(none, form.material(study.TRUE, TRIAL), ends)[0][1::2]]
     rows = [f"{44 - top:g};{44 - after:.3f}" for top, after in zip(tops, free, strict=True)]
     (tmp_path / "lengths.csv").write_text("height;free_length\n" + "\n".join(rows).replace(".", ",") + "\n")
     named = case.model_dump(mode="json") | {"material": {"wire": "EN 10270-1 SH"}}

@@ -32,6 +32,7 @@ FAST = False
 SETS, READINGS, FRESH = 40, 40, range(40, 45)  # FRESH: seeds of the sets that predict
 FORCE, TRAVEL = 0.005, 0.02  # noise, of each force and in mm
 PARTS, THIRD = (0.55, 0.8), 0.95  # of the travel to block
+FINE = rods.Steps(60, 15, 20, {"elements_per_turn": 20})  # of the presses
 TRUE = {"G": 80000.0, "yield_stress": 500.0, "rise": 800.0, "rate": 300.0, "share": 0.5}
 
 
@@ -59,10 +60,14 @@ def pressed(case: Case, tops: Sequence[float], uniform: bool = False) -> Pressin
     form = Form("voce", 0.3, 293.15)
     ends = tuple(end for top in tops for end in (float(top), None))
     none = Pressing("press", case, np.zeros(1), np.zeros(1), np.zeros(1, int), ends)
-    found = rods.uniform(none, form.law(TRUE), ends) if uniform else rods.whole(none, form.material(TRUE, TRIAL), ends)
-    travels = [curve.places(READINGS)[:: -1 if k % 2 else 1] for k, curve in enumerate(found)]
-    force = np.concatenate([curve.at(travel) for curve, travel in zip(found, travels, strict=True)])
-    return replace(none, travel=np.concatenate(travels), force=force, branch=np.repeat(np.arange(len(ends)), READINGS))
+    made = _read(none, rods.uniform(none, form.law(TRUE), ends))
+    return made if uniform else _read(made, rods.whole(made, form.material(TRUE, TRIAL), ends, FINE)[0])
+
+
+def _read(one: Pressing, curves: Sequence[rods.Branch]) -> Pressing:
+    travels = [curve.places(READINGS)[:: -1 if k % 2 else 1] for k, curve in enumerate(curves)]
+    force = np.concatenate([curve.at(travel) for curve, travel in zip(curves, travels, strict=True)])
+    return replace(one, travel=np.concatenate(travels), force=force, branch=np.repeat(np.arange(len(curves)), READINGS))
 
 
 def noisy(one: Pressing, rng: np.random.Generator) -> Pressing:
@@ -108,12 +113,13 @@ def run(study: Study) -> None:
         "nothing flows backwards below a share of about 0.65",
         kind="at_most",
     )
-    true = rods.whole(clean[0], Form("voce", 0.3, 293.15).material(TRUE, TRIAL), [THIRD * furthest, None])[1].free
+    third = [THIRD * furthest, None]
+    true = rods.whole(clean[0], Form("voce", 0.3, 293.15).material(TRUE, TRIAL), third, FINE)[0][1].free
     for seed in FRESH:
         rng = np.random.default_rng(seed)
         fit = fit_springs([noisy(one, rng) for one in clean], like=fits[0])
         material = fit.model.form.material(fit.values, TRIAL)
-        found = rods.whole(clean[0], material, [THIRD * furthest, None])[1].free
+        found = rods.whole(clean[0], material, third)[0][1].free
         study.check(f"set at a third height, constants of set {seed}, mm", found, true, "the true constants", 0.01)
     rng = np.random.default_rng(0)
     first = [noisy(one, rng) for one in clean]
