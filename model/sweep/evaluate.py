@@ -32,6 +32,7 @@ def evaluate(
     key: str | None = None,
     model: Model = "rod",
     keys: Keys | None = None,
+    estimates: bool = True,
 ) -> dict[str, Any]:
     """Run a case; errors are recorded instead of raised.
 
@@ -43,6 +44,7 @@ def evaluate(
         key: of the task when the sweep was read; it fails if it has another one now, since a file has changed.
         model: `rod`, or `uniform_rod` for the estimate by a coil whose state is the same all along the wire.
         keys: of cases evaluated together, for which a file is read once.
+        estimates: whether rods estimate the errors of their mesh, section and contact, which takes a companion.
 
     Returns:
         The record, plain data: `key`, `status` ("done" or "failed"), `reason`, `seconds`, `summary`, `steps` (columns
@@ -54,7 +56,7 @@ def evaluate(
     try:
         case: Case = check(data, file)
         if model == "rod":
-            analysis = Analysis(case, comm, detailed=False)
+            analysis = Analysis(case, comm, detailed=False, estimates=estimates)
         else:
             record["summary"] = estimated(case, keys)
         if key is not None and keys(case, model) != key:  # as it is now that the files have been read

@@ -93,7 +93,8 @@ class Plan:
     def task(self, row: Row, key: str, model: Model = "rod") -> Task:
         """The task of running a case: arguments of `evaluate`."""
         file, limit = str(self.case_path), self.spec.time_limit
-        return {"data": self.data(row), "file": file, "time_limit": limit, "key": key, "model": model}
+        found = {"data": self.data(row), "file": file, "time_limit": limit, "key": key, "model": model}
+        return found | {"estimates": not self.spec.rods}  # rods that correct uniform ones are compared with these
 
     def data(self, row: Row) -> dict[str, Any]:
         """The raw data of one case, as in a case file."""
