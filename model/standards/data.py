@@ -7,7 +7,7 @@ import numpy as np
 from coilset.meshes.springs.axis import Axis
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.standards.buckling import buckling_travel
-from coilset.model.standards.rate import torsion_rate
+from coilset.model.standards.rate import WireNumbers, torsion_rate
 from coilset.model.standards.wires.steel import STEEL, Elastic
 
 
@@ -18,6 +18,7 @@ class SpringData:
     Attributes:
         body_length: of a spring that is not pressed between seats: with hooks or arms, or wound solid; else None.
         turn_rate: of a spring with arms, N mm/°: E I over the length of its wire; else None.
+        is_round: whether its wire is.
     """
 
     turns: float
@@ -39,6 +40,7 @@ class SpringData:
     axis: Axis | None = None
     body_length: float | None = None
     turn_rate: float | None = None
+    is_round: bool = True
 
     @property
     def is_cylinder(self) -> bool:
@@ -91,7 +93,10 @@ class SpringData:
     def _rate(self) -> tuple[str, str, str]:
         if self.turn_rate is not None:
             return "rate E I/l, EN 13906-3 with the arms' wire", f"{self.turn_rate:.5g}", "N mm/°"
-        formula = "rate G d⁴/(8 D³ n), EN 13906-1" if self.is_cylinder else "rate by torsion, G/(64 ∫ r³/d⁴ dn)"
+        if self.is_round:
+            formula = "rate G d⁴/(8 D³ n), EN 13906-1" if self.is_cylinder else "rate by torsion, G/(64 ∫ r³/d⁴ dn)"
+        else:
+            formula = "rate 4 G J/(π D³ n)" if self.is_cylinder else "rate by torsion, G/(2 π ∫ r³/J dn)"
         if self.body_length is not None:
             formula = formula.replace("13906-1", "13906-2, of the body")
         return formula, f"{self.rate:.5g}", "N/mm"
@@ -123,7 +128,10 @@ def spring_data(spring: Spring, material: Elastic = STEEL) -> SpringData:
 
     has_arms = any(tail is not None and not tail.pulled for tail in spring.tails)
     is_solid = spring.body_length < spring.block_height * (1.0 + 1e-9)
-    bending = material.young_modulus * np.pi * float(d.min()) ** 4 / 64.0
+    height = float(d.min())
+    second = np.pi * height**4 / 64.0
+    if spring.section is not None:
+        second = WireNumbers.of(spring.section, height, float(D.mean())).in_plane
     return SpringData(
         turns=spring.turns,
         active_turns=spring.active_turns,
@@ -143,5 +151,6 @@ def spring_data(spring: Spring, material: Elastic = STEEL) -> SpringData:
         rate=torsion_rate(spring, material.shear_modulus),
         axis=spring.measured_axis,
         body_length=spring.body_length if spring.has_tails or is_solid else None,
-        turn_rate=float(np.radians(bending / spring.wire_length)) if has_arms else None,
+        turn_rate=float(np.radians(material.young_modulus * second / spring.wire_length)) if has_arms else None,
+        is_round=spring.section is None,
     )
