@@ -150,8 +150,7 @@ class FacedCoils(Coils):
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces along the connection of closest points, and moments, where faces touch."""
         σ, slope = Tilts.at(self.memory, trial)
-        known = slice(None) if trial.known is None else trial.known.own
-        lift = min(2.0 * self._longest * float(np.abs(σ[known]).max(initial=0.0)), self._skin)
+        lift = min(2.0 * self._longest * float(np.abs(σ).max()), self._skin)
         pressed = self.search(trial, lift)
         self._last = trial, pressed
         count = len(pressed.pair)

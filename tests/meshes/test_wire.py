@@ -6,6 +6,7 @@ import pytest
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.data import spring_data
 
 OVAL = {"oval": {"width": 4.0, "height": 5.0}}
 RECTANGLE = {"rectangle": {"width": 6.0, "height": 3.0, "corner": 0.5}}
@@ -74,6 +75,12 @@ def test_numbers_of_a_round_ellipse_are_those_of_round_wire():
     made = Cylinder.of(case({"oval": {"width": 5.0, "height": 5.0}}).spring.build())
     assert (made.of_rate, made.of_stress, made.of_mass) == pytest.approx((5.0, 5.0, 5.0), rel=1e-7)
     assert made.correction == pytest.approx((6.4 + 0.5) / (6.4 - 0.75), rel=5e-3)
+
+
+def test_data_name_the_formula_of_the_rate():
+    """That of round wire stands for no rectangle."""
+    names = [label for label, *_ in spring_data(case(RECTANGLE).spring.build()).rows()]
+    assert "rate 4 G J/(π D³ n)" in names
 
 
 def test_section_modulus_of_a_rectangle():

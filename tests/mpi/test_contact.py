@@ -95,6 +95,6 @@ def test_what_ranks_know_at_their_own_stations_all_know_after_it_is_shared(press
             contact.evaluate(TrialPositions(*state))
             expected = contact.memory["traction"].copy()
             contact.evaluate(nearby(*pressed))
-            analysis.system.touching.share(contact.memory)
+            analysis.system.touching.share(contact.memory, ["traction", "x"])
             np.testing.assert_allclose(contact.memory["traction"], expected, rtol=0, atol=1e-13 * expected.max())
             np.testing.assert_array_equal(contact.memory["x"], state[0])

@@ -12,6 +12,8 @@ from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory
 from coilset.model.equilibrium.system.halo import Halo
 from coilset.model.equilibrium.system.layout import LineLayout
 
+AUGMENTED = "multiplier_offset"  # the part of a memory that `augment` changes
+
 
 class ContactParts:
     """Contacts, evaluated at positions of this rank's nodes.
@@ -32,9 +34,7 @@ class ContactParts:
         self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact.limits_step]
         self._limiting = [contacts[number] for number in self._limiting_numbers]
         self._augmented = [contact for contact in contacts if contact.multiplier_offset is not None]
-        self._kept = [
-            contact.memory for contact in contacts if contact.memory is not None and contact.multiplier_offset is None
-        ]
+        self._kept = [contact.memory for contact in contacts if contact.memory is not None]
 
     def evaluate(
         self, x: np.ndarray, seats: np.ndarray, rotations: np.ndarray | None
@@ -92,19 +92,19 @@ class ContactParts:
         for contact in self._augmented:
             contact.augment(trial)
             if contact.memory is not None:
-                self.share(contact.memory)
+                self.share(contact.memory, [AUGMENTED])
 
     def share_memories(self) -> None:
         """Share the memories among all ranks, except what `augment` has shared already; collective."""
         for memory in self._kept:
-            self.share(memory)
+            self.share(memory, [name for name in memory.stations if name != AUGMENTED])
 
-    def share(self, memory: Memory) -> None:
-        """Share a memory: each rank gives the values at its own stations to all; collective."""
+    def share(self, memory: Memory, names: Sequence[str]) -> None:
+        """Share arrays of a memory: each rank gives the values at its own stations to all; collective."""
         if self.comm.size == 1:
             return
-        for name, stations in memory.stations.items():
-            values = memory[name]
+        for name in names:
+            stations, values = memory.stations[name], memory[name]
             values[~np.isin(stations, self.layout.own_stations)] = 0.0
             self.comm.Allreduce(MPI.IN_PLACE, values)
 
