@@ -36,17 +36,17 @@ def haigh(cycle: Cycle, sensitivity: float) -> np.ndarray:
 
 
 def smith_watson_topper(cycle: Cycle, poisson: float) -> np.ndarray:
-    """√(E σ_max ε̂) on the plane of the greatest normal strain amplitude (Smith, Watson and Topper 1970; Socie 1987).
+    """√(E σ_max ε̂), greatest of the principal planes of the strain's amplitude (Smith, Watson and Topper 1970).
 
-    Elastic: E ε̂ = (1 + ν) n·Ŝ n − ν tr Ŝ. Of planes with the same strain amplitude, as the two at ±45° under torsion,
-    the one with the greater σ_max. 0 where σ_max is not tensile. An amplitude of normal stress.
+    Elastic: E ε̂ = (1 + ν) n·Ŝ n − ν tr Ŝ. Socie (1987) takes the plane of the greatest amplitude; of the two at ±45°
+    of a spring's wire, whose amplitudes differ by a little bending, that may be the one in compression, and tension on
+    the other one would not count. 0 where σ_max is tensile on none. An amplitude of normal stress.
     """
     values, vectors = np.linalg.eigh(cycle.amplitude)
     strain = np.abs((1.0 + poisson) * values - poisson * values.sum(axis=-1, keepdims=True))
     mean = np.einsum("...ia,...ij,...ja->...a", vectors, cycle.mean, vectors)
-    largest = strain.max(axis=-1, keepdims=True)
     tension = np.maximum(mean + np.abs(values), 0.0)
-    return np.sqrt(np.where(strain >= (1.0 - SAME) * largest, tension * strain, 0.0).max(axis=-1))
+    return np.sqrt((tension * strain).max(axis=-1))
 
 
 def findley(cycle: Cycle, k: float) -> np.ndarray:

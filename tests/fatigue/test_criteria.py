@@ -49,6 +49,14 @@ def test_torsion_with_static_torsion(name):
     assert CRITERIA[name](cycle) == pytest.approx(CLOSED_TORSION[name], rel=1e-6)
 
 
+@pytest.mark.parametrize("bending", [-2.0, 2.0])
+def test_a_little_bending_hides_no_tension(bending):
+    """It makes the amplitude of one of the planes at ±45° the greater one, perhaps of that in compression."""
+    cycle = Cycle(torsion(MEAN), torsion(SWING, bending))
+    found = CRITERIA["smith_watson_topper"](cycle)
+    assert found == pytest.approx(CLOSED_TORSION["smith_watson_topper"], rel=0.01)
+
+
 TENSION = 300.0
 CLOSED_BENDING = {
     "haigh": SWING + 0.3 * TENSION / math.sqrt(3.0),
