@@ -1,16 +1,16 @@
 """Programs for one point: the shipped ones against the rate equations, stress and mixed control, wrong files."""
 
 import csv
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.material import library, programs
+from coilset.scripts.commands.material import app
 from coilset.verification.references import heun
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "material"
@@ -134,22 +134,22 @@ def test_wrong_programs(content, message, tmp_path):
     assert "\n" not in str(error.value)
 
 
-def test_the_command_draws_and_keeps(tmp_path):
+def test_the_command_draws_and_keeps(tmp_path, monkeypatch):
     """CSV and picture are written once; a second run needs --overwrite; a temperature outside the table is refused."""
-    command = [sys.executable, "-m", "coilset.scripts", "material", "test", "ck15"]
+    monkeypatch.chdir(tmp_path)
 
     def run(*arguments):
-        return subprocess.run([*command, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False)
+        return CliRunner().invoke(app, ["test", "ck15", *arguments])
 
     done = run(str(EXAMPLES / "tension_torsion.yaml"), "--out", "out")
-    assert done.returncode == 0, done.stderr
+    assert done.exit_code == 0, done.output
     assert (tmp_path / "out" / "tension_torsion.png").stat().st_size > 10_000
     rows = list(csv.DictReader((tmp_path / "out" / "tension_torsion.csv").read_text().splitlines()))
     assert float(rows[-1]["gamma12"]) == 0.08
     assert float(rows[-1]["sigma11"]) < 30 < 200 < float(rows[-1]["tau12"])
-    assert run(str(EXAMPLES / "tension_torsion.yaml"), "--out", "out").returncode == 2
+    again = run(str(EXAMPLES / "tension_torsion.yaml"), "--out", "out").exception
+    assert isinstance(again, InputError)
+    assert again.exit_code == 2
     (tmp_path / "hot.yaml").write_text("{name: hot, steps: [{temperature: 400, increments: 5}]}")
-    done = run("hot.yaml")
-    assert done.returncode == 2
     expected = "hot.yaml: steps.0.temperature: 400 K is outside the table of 'ck15', known only for 293.15 K"
-    assert done.stderr == f"coilset: {expected}\n"
+    assert str(run("hot.yaml").exception) == expected
