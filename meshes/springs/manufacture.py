@@ -6,7 +6,7 @@ from typing import Annotated, Self
 from annotated_types import Unit
 from pydantic import Field, model_validator
 
-from coilset.model.base.schema import Strict
+from coilset.model.base.strict_entries import Strict
 
 
 class Relief(Strict):

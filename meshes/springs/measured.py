@@ -15,7 +15,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.shapes import Length
 from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError
-from coilset.model.base.schema import Strict
+from coilset.model.base.strict_entries import Strict
 
 if TYPE_CHECKING:  # imported at run time only when a mesh is read
     import meshio

@@ -21,7 +21,7 @@ from coilset.meshes.springs.shapes import CurvedAxis, DiameterProfile, Length, P
 from coilset.meshes.springs.wire import WireSpec
 from coilset.meshes.tails import Arms, Hooks, tail
 from coilset.model.base.errors import InputError
-from coilset.model.base.schema import Strict
+from coilset.model.base.strict_entries import Strict
 
 PAST = "made_by", "peening", "initial_tension"  # entries that leave stress in the wire before its first load
 DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wire diameters to add for the mean one

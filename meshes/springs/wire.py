@@ -11,7 +11,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs.shapes import Length
 from coilset.model.base.errors import InputError
-from coilset.model.base.schema import Strict
+from coilset.model.base.strict_entries import Strict
 
 if TYPE_CHECKING:
     from coilset.meshes.section_shapes import Outline

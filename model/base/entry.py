@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from coilset.model.base.errors import InputError
-from coilset.model.base.schema import WORD_OR_NUMBER, Strict, Whole
+from coilset.model.base.strict_entries import WORD_OR_NUMBER, Strict, Whole
 
 __all__ = ["WORD_OR_NUMBER", "Strict", "Whole", "check_entries", "explain", "shown"]
 

@@ -14,7 +14,7 @@ from coilset.meshes.springs.stations import ElementsPerTurn
 from coilset.model.base.entry import Strict, Whole, check_entries
 from coilset.model.base.yaml import read_data
 from coilset.model.case.endurance import EnduranceSpec
-from coilset.model.case.heads import FREEDOMS, ForceLineSpec, HeadsSpec
+from coilset.model.case.head_freedoms import FREEDOMS, ForceLineSpec, HeadsSpec
 from coilset.model.case.heat import HeatSpec
 from coilset.model.case.limits import AnyLimit
 from coilset.model.case.phases import AnyPhase, Phase, heads_of

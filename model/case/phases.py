@@ -7,7 +7,7 @@ from annotated_types import Unit
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.model.base.entry import Strict, Whole
-from coilset.model.case.heads import HeadTarget
+from coilset.model.case.head_freedoms import HeadTarget
 from coilset.model.equilibrium.settings import Drive
 
 

@@ -7,7 +7,7 @@ from annotated_types import Unit
 from pydantic import Field, model_validator
 
 from coilset.model.base.entry import Strict
-from coilset.model.case.heads import HeadSpec
+from coilset.model.case.head_freedoms import HeadSpec
 
 GROOVE = 0.75  # turns of the groove that are usual: what grinding makes flat
 

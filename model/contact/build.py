@@ -12,9 +12,9 @@ from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine, WirePoints
 from coilset.model.contact.faces import FacedCoils, FacedSeat, seat_arms
 from coilset.model.contact.friction import CoilFriction, GuideFriction, SeatFriction
-from coilset.model.contact.gap import Gaps
 from coilset.model.contact.hold import Groove, Guide, Mount, Support
 from coilset.model.contact.seat import Seat
+from coilset.model.contact.thesis_gaps import Gaps
 
 # Default bedding is E/4: wires that flatten where they touch along a line have E/7.5 to E/4.9 (docs/contact.md).
 MODULUS_OF_BEDDING = 4.0

@@ -1,4 +1,6 @@
-"""All numbers that control the iteration and the steps, with their units; `solver.control` of a case file.
+"""Numbers that control the course of the iteration and the steps, with their units; `solver.control` of a case file.
+
+How exactly equilibrium is solved, and in how many iterations at most, are entries of `solver` in `case/case.py`.
 
 How much each of them matters is measured in docs/tuning.md: each halved and doubled over the shipped springs.
 """
@@ -9,7 +11,7 @@ from typing import Annotated, ClassVar, Literal, NamedTuple
 from annotated_types import Unit
 from pydantic import ConfigDict, Field
 
-from coilset.model.base.schema import Whole
+from coilset.model.base.strict_entries import Whole
 
 Positive = Annotated[float, Unit("1"), Field(gt=0, strict=True)]
 Fraction = Annotated[float, Unit("1"), Field(gt=0, lt=1, strict=True)]

@@ -20,7 +20,7 @@ from coilset.model.material.law.parts import Parts
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.kinds import Sections
-from coilset.model.section.outline import WHOLE
+from coilset.model.section.outlined_section import WHOLE
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.wire import SectionLaw
 

@@ -11,7 +11,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement, chord_placement, refuse_sharp_bends, section_placement
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
-from coilset.model.case.heads import DamperSpec, HeadsSpec
+from coilset.model.case.head_freedoms import DamperSpec, HeadsSpec
 from coilset.model.case.phases import heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.contact.base import Contact
@@ -35,7 +35,7 @@ from coilset.model.rotations.triads import chord_triads
 from coilset.model.run.coarse_mesh import coarse_mesh_warnings
 from coilset.model.run.effort import Effort, machine_memory
 from coilset.model.runtime.threads import Threads
-from coilset.model.section.outline import Outlined
+from coilset.model.section.outlined_section import Outlined
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_allowed, case_elastic, case_strength

@@ -45,7 +45,7 @@ from coilset.model.results.stresses import change_of_sign, shear_inside, to_the_
 from coilset.model.run.load_history import LoadHistory
 from coilset.model.run.working import working_states
 from coilset.model.section.kinds import make_sections
-from coilset.model.section.outline import outline_of
+from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.rules import DiskRule, polar
 from coilset.model.standards.case_warnings import keeps_elastic_warping, warping_can_be_estimated
 

@@ -14,7 +14,7 @@ from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.ground import ground_sections, rim_rule
 from coilset.model.section.integration import FIBRES, section, update_points
-from coilset.model.section.outline import outline_of
+from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 from coilset.model.section.wire import BEND

@@ -9,7 +9,7 @@ from scipy.interpolate import BarycentricInterpolator
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.section.integration import FIBRES
-from coilset.model.section.outline import WHOLE, Outlined, Section, Segment, outline_of
+from coilset.model.section.outlined_section import WHOLE, Outlined, Section, Segment, outline_of
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.shape import SHAPE
 

@@ -30,7 +30,7 @@ from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import condense, find_warping, strain_operator
 from coilset.model.section.ground import cut_sections
-from coilset.model.section.outline import outline_of
+from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 

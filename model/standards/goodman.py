@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import log10
 
-from coilset.model.standards.wires.file import TESTED, Endurance, Springs
+from coilset.model.standards.wires.wire_file import TESTED, Endurance, Springs
 
 SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 

@@ -16,7 +16,7 @@ import numpy as np
 from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.geometry import Spring
-from coilset.model.section.outline import Outlined, Section
+from coilset.model.section.outlined_section import Outlined, Section
 
 AROUND = 720  # points on the surface at which the greatest shear is sought, and of the coils, for their moment
 VERTICAL = 1e-6  # sine of the angle to the axis below which an arm is axial

@@ -3,7 +3,7 @@
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
-from coilset.model.section.outline import Outlined
+from coilset.model.section.outlined_section import Outlined
 
 
 def coil(spring: Spring) -> np.ndarray:

@@ -27,7 +27,7 @@ from ufl import cross, dot, grad, inner
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.rod.forms import at_sections, section_element
 from coilset.model.rod.rod import Rod
-from coilset.model.section.outline import outline_of
+from coilset.model.section.outlined_section import outline_of
 
 TONNE = 1e-3  # per kg: with N, mm and s masses are in t
 

@@ -6,9 +6,9 @@ import pytest
 from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.friction import CoilFriction, SeatFriction
-from coilset.model.contact.gap import Gaps, Stops
 from coilset.model.contact.hold import Groove, Mount
 from coilset.model.contact.seat import Seat
+from coilset.model.contact.thesis_gaps import Gaps, Stops
 
 LEVEL = np.where(np.arange(12) == 8, 27.5, 0.0)
 PRESSED = np.where(np.arange(12) == 8, 12.2, 0.0)

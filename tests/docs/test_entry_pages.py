@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from coilset import meshes, model
-from coilset.model.base.schema import Strict
+from coilset.model.base.strict_entries import Strict
 from coilset.model.case import reference
 from coilset.model.equilibrium.settings import NewtonControl, StepControl
 

@@ -8,7 +8,7 @@ from coilset.model.case.case import check
 from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
 from coilset.model.section.ground import section_points
-from coilset.model.section.outline import Segment
+from coilset.model.section.outlined_section import Segment
 from coilset.model.section.rules import polar, rim
 from coilset.model.section.shape import curved_shape
 from coilset.verification.cases.sections.ground_sections import CutCoil, slice_rate

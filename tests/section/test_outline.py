@@ -5,7 +5,7 @@ import pytest
 
 from coilset.meshes.section_shapes import Curve, Oval, Trapezoid, rectangle
 from coilset.model.base.errors import InputError
-from coilset.model.section.outline import Outlined, Segment
+from coilset.model.section.outlined_section import Outlined, Segment
 from coilset.model.section.rules import SURFACE_POINTS
 
 RADIUS = 2.5

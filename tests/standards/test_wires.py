@@ -9,8 +9,8 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.yaml import read_data
 from coilset.model.standards import goodman
 from coilset.model.standards.wires import library, names, wire
-from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.library import FOLDER
+from coilset.model.standards.wires.wire_file import WireFile, with_common
 
 # Least strengths of EN 10270-1, N/mm², some rows of the tables of springcalc 0.1.24, which are rounded to 10
 TABLES = {

@@ -13,7 +13,7 @@ from pydantic import Discriminator, Field, Tag
 
 from coilset.model.base.entry import Strict, check_entries
 from coilset.model.base.yaml import read_data
-from coilset.model.material.law.curve import RambergOsgood, Swift, Table, Voce
+from coilset.model.material.law.hardening_curves import RambergOsgood, Swift, Table, Voce
 
 Text = Annotated[str, Field(min_length=1)]
 NONE = "its constants, or 'none' if the material lacks this function"

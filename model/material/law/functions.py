@@ -2,7 +2,7 @@
 
 The kernels take one 1-D array `p`: a head of `ROWS_START` entries, then one row of `ROW_LENGTH` constants for every
 temperature of the material's table. Between two temperatures the values of the functions are interpolated linearly.
-The rows are followed by the curves of k² that are given by points (`coilset.model.material.law.curve`).
+The rows are followed by the curves of k² that are given by points (`coilset.model.material.law.hardening_curves`).
 """
 
 import math

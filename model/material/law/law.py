@@ -12,8 +12,8 @@ from coilset.model.base.entry import Strict
 from coilset.model.base.errors import InputError
 from coilset.model.material.law import functions as fn
 from coilset.model.material.law.checks import check_combinations, check_functions
-from coilset.model.material.law.curve import AnyCurve
 from coilset.model.material.law.file import UNITS, Chaboche, Constants, Creep, MaterialFile, Validity
+from coilset.model.material.law.hardening_curves import AnyCurve
 from coilset.model.material.law.parts import CREEP_ENTRIES, Parts, further_columns
 
 CELSIUS = 273.15  # K at 0 °C

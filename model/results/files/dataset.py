@@ -14,7 +14,7 @@ from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section.ground import section_points
-from coilset.model.section.outline import outline_of
+from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.rules import SURFACE_POINTS
 
 DRAWN = 144  # points on the outline of a wire that is not round

@@ -25,7 +25,7 @@ class Step:
     """One converged step.
 
     Its `iterations` are those of the solve that found it; its `evaluations` of states, and `failed_solves`, count what
-    failed before it too, see coilset.model.equilibrium.newton.convergence.Outcome.
+    failed before it too, see coilset.model.equilibrium.newton.outcome.Outcome.
 
     Attributes:
         number: from 1 on; phase: number of the phase that it belongs to, from 0 on.

@@ -9,8 +9,8 @@ from typing import Any
 from coilset.model.base.entry import check_entries, shortened
 from coilset.model.base.errors import InputError
 from coilset.model.base.yaml import read_data
-from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.wire import Wire
+from coilset.model.standards.wires.wire_file import WireFile, with_common
 
 FOLDER = Path(__file__).parent
 

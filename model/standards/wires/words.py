@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from coilset.model.standards.wires.file import (
+from coilset.model.standards.wires.wire import Wire
+from coilset.model.standards.wires.wire_file import (
     TESTED,
     Endurance,
     Logarithm,
@@ -14,7 +15,6 @@ from coilset.model.standards.wires.file import (
     Table,
     Tolerance,
 )
-from coilset.model.standards.wires.wire import Wire
 
 LABELS = {
     "young_modulus": ("Young's modulus E", "MPa"),

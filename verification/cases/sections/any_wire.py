@@ -30,7 +30,7 @@ from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Egg, Outline, Oval, Tube, rectangle
 from coilset.model.base.style import STYLE
 from coilset.model.material import library
-from coilset.model.section.outline import Outlined, OutlinedRule
+from coilset.model.section.outlined_section import Outlined, OutlinedRule
 from coilset.model.section.rules import polar
 from coilset.model.slice.analysis import ACROSS, INSIDE
 from coilset.model.slice.problem import SliceProblem

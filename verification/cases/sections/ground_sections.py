@@ -24,7 +24,7 @@ from coilset.meshes.springs.placement import straight
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.section.kinds import make_sections
-from coilset.model.section.outline import Segment
+from coilset.model.section.outlined_section import Segment
 from coilset.model.section.rules import polar
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.slice import Coil, Slice

@@ -28,7 +28,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
-from coilset.model.contact.gap import Stops
+from coilset.model.contact.thesis_gaps import Stops
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.section.rules import polar

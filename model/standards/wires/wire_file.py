@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from coilset.model.base.schema import Strict
+from coilset.model.base.strict_entries import Strict
 
 Sure = Literal["checked against a second source", "one source", "estimate"]
 Text = Annotated[str, Field(min_length=1)]
