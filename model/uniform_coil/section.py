@@ -15,7 +15,7 @@ from coilset.model.section.shape import shear_by_force
 RADIUS, INCLINATION, RISE, TURN = range(4)  # the coordinates q = (R̄, ϑ, h̄, λ)
 MAX_ITERATIONS = 25
 PRECISION = 1e-9  # out-of-balance force over that which the step puts on the coil
-ROUNDING = 1e-13  # below which, times the maximum resultant, nothing is out of balance
+ROUNDING = 1e-12  # below which, times the maximum resultant, nothing is out of balance
 
 # One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points;
 # dm/dy, R/j² or, for a plain section, 0; m ∂(γ₁₂, γ₁₃)/∂Γ₃ at the points.
