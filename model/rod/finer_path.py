@@ -15,9 +15,9 @@ is the error of the section forces. Errors that plastic flow erases are erased h
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-from mpi4py import MPI
 
 from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.body.state import State, Where
@@ -25,6 +25,9 @@ from coilset.model.rod.assembly import blocks
 from coilset.model.rod.elements import Element
 from coilset.model.runtime.kernels import njit
 from coilset.model.section.kinds import Sections
+
+if TYPE_CHECKING:  # a solve loads MPI in another thread meanwhile
+    from mpi4py import MPI
 
 BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
 CLOCKS = "clock", "halfway_clock"  # of the whole rod, at the end of a step, and half way along its path
@@ -46,7 +49,7 @@ class FinerPath:
     """
 
     def __init__(
-        self, sections: Sections, state: State, names: Iterable[str], element: Element, comm: MPI.Comm = MPI.COMM_SELF
+        self, sections: Sections, state: State, names: Iterable[str], element: Element, comm: "MPI.Comm"
     ) -> None:
         self._state, self._strain, self._comm = state, state["strain"], comm
         self._weights, shape = np.array(element.weights), self._strain.trial.shape

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
 from coilset.meshes.springs.placement import straight
 from coilset.model.body.state import State, Where
@@ -50,7 +51,7 @@ class Path:
 
 def follower(path):
     """The finer path of all arrays of the path's sections."""
-    return FinerPath(path.sections, path.state, list(path.points), THESIS)
+    return FinerPath(path.sections, path.state, list(path.points), THESIS, MPI.COMM_SELF)
 
 
 @pytest.mark.parametrize("steps", [4, 8])
