@@ -30,7 +30,8 @@ SOLVES = [
 def test(arguments: list[str]) -> int:
     """Run pytest, once with arguments, else stage by stage; returns the exit code of the first failure, else 0.
 
-    With two cores, the tests of parts and those of whole solves, which take one core each, run in parallel.
+    Tests marked slow are run with arguments alone. With two cores, the tests of parts and those of whole solves,
+    which take one core each, run in parallel.
 
     Raises:
         InputError: in an installation, which has no tests.
@@ -42,7 +43,7 @@ def test(arguments: list[str]) -> int:
         return run("tests on one rank", pytest)
     print("coilset: all tests, in serial and under MPI; some ten minutes on two cores", flush=True)
     solves = [f"tests/{name}" for name in SOLVES]
-    alone = [*pytest, "-m", "not mpi"]  # these compare ranks with one
+    alone = [*pytest, "-m", "not mpi and not slow"]  # mpi: these compare ranks with one
     parts = [*alone, *(f"--ignore={path}" for path in solves)]
     if usable_cores() > 1:
         with beside("tests of parts", parts) as found:

@@ -58,6 +58,7 @@ def test_checkouts_are_compared_where_springs_end_in_both():
     assert [column[0] for column in cells[1:]] == ["1", "0.25", "0.25", "0.25", "0.50", "0.99 %"]
 
 
+@pytest.mark.slow
 def test_the_command_runs_springs_in_two_checkouts(tmp_path, monkeypatch, capsys):
     """The processes of both sides, with small springs in place of random ones; this checkout is the other one, too."""
     case = SMALL | {"material": "ck15", "mesh": {"section": {"kind": "curved"}}}

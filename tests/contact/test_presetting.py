@@ -9,6 +9,7 @@ from coilset.verification.cases.contact.contact_meshes import FAILED, IN_PARTS, 
 from coilset.verification.spring_references.coil_by_coil import CoilByCoil
 
 
+@pytest.mark.slow
 def test_cone_reaches_block_and_comes_back_without_a_failed_solve():
     """16 elements a turn, twelve equal steps down and up; what springs back is that of coils in torsion within 10 %."""
     analysis, summary, counter = press("cone", 16, False)

@@ -97,6 +97,7 @@ def test_of_many_springs_the_nearest_to_the_case_is_found(search):
     assert np.linalg.norm(away) > 0.02
 
 
+@pytest.mark.slow
 def test_limits_that_exclude_each_other_are_refused_with_the_reason(search):
     with pytest.raises(InputError, match="cannot be met together with the other conditions"):
         solve(search(HEIGHT, {"free_length_after_mm": {"at_least": 26.0}, "force_max_N": {"at_least": 200.0}}))

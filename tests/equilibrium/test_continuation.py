@@ -79,7 +79,7 @@ def test_the_steps_of_an_automatic_run_give_its_numbers_again(make):
     assert {0.1, 1.0} <= {step.progress for step in cut}
 
 
-@pytest.mark.parametrize(("ends", "smallest"), [("seats", 0.05), ("clamped", 0.01)])
+@pytest.mark.parametrize(("ends", "smallest"), [("seats", 0.05), pytest.param("clamped", 0.01, marks=pytest.mark.slow)])
 def test_an_impossible_target_is_given_up_with_all_that_was_reached(make, ends, smallest):
     """Coils that may lie 0.5 µm in each other bear 1300 N only in steps much shorter than these may become."""
     steps = f"solver.control.steps.smallest={smallest}"
@@ -149,6 +149,7 @@ def test_what_is_augmented_begins_where_states_are_rejected(make):
     assert analysis.newton.augmentation_tolerance == analysis.continuation.penetration_limit == 0.02 * thinnest
 
 
+@pytest.mark.slow
 def test_a_spring_that_is_solid_ends_there(make, monkeypatch):
     """Augmentation, which cannot help, is given up early: two wires lie on each other, and the target is 1 mm lower.
 

@@ -115,6 +115,7 @@ def test_constants_come_back_from_other_integrals(study):
     )
 
 
+@pytest.mark.slow
 def test_garofalo_and_two_kinds_of_tests():
     """Tension and torsion together give sinh's five constants back; without noise exactly."""
     law = library.load("creeping")

@@ -38,6 +38,7 @@ def test_shipped_tests_are_what_they_say(shipped):
     assert [test.kind for test in shipped] == ["tension", "torsion", "combined", "combined"]
 
 
+@pytest.mark.slow
 def test_constants_of_ck15_come_back(fitted):
     """Each constant of the thesis lies within the stated uncertainty, and that is not wide where the tests tell."""
     for name, true in material_fit.true_constants().items():
@@ -49,12 +50,14 @@ def test_constants_of_ck15_come_back(fitted):
         assert fitted.uncertainty[name] < limit * material_fit.true_constants()[name], name
 
 
+@pytest.mark.slow
 def test_residual_is_the_noise(fitted, shipped):
     """The law fitted to noise of 1 % leaves this noise; the 12 constants take next to nothing from 3000 readings."""
     for test, scatter in zip(shipped, fitted.scatter, strict=True):
         assert scatter == pytest.approx(0.01 * np.abs(test.stress).max(), rel=0.08)
 
 
+@pytest.mark.slow
 def test_fitted_material_file_is_a_material(fitted, tmp_path):
     """Written, read again, it answers tension to 10 % as Ck 15 does within 0.5 %."""
     path = tmp_path / "fitted.yaml"

@@ -115,6 +115,7 @@ def pressed(change, loading, path):
     return analysis.run(), summarise(analysis.setup, analysis.result)
 
 
+@pytest.mark.slow
 def test_block_of_a_scan_off_its_axis_is_that_of_the_spring(tmp_path):
     """By the local slope of the radius, 1 mm off, `block` was 18.2 mm high: 4,056 N and a set of 55.5 mm."""
     loading = [{"to": "block", "steps": 12}, {"to": {"force": 0}, "steps": 3}]

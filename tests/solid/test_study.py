@@ -68,6 +68,7 @@ def test_coarse_elastic_coil():
     assert result["force"] == pytest.approx(1 / (1 - 3 / 16 / 8**2), rel=0.005)
 
 
+@pytest.mark.slow
 def test_coarse_pressed_section_meets_the_rod(tmp_path):
     # force within 2 % and set within 3 % are asked for; on finer meshes 0.0 % and 0.4 % are found
     cases = {"elastic": [], "pressed": [pressing.PressedSection(8.0, 2, 12, steps=4)]}

@@ -173,6 +173,7 @@ def test_tester_friction_and_compliance_are_fitted(by_uniform_rods):
     assert found.intervals["friction"].high - found.intervals["friction"].low < 0.01
 
 
+@pytest.mark.slow
 def test_the_command_fits_whole_rods_to_lengths(tmp_path):
     """Free lengths alone, G and the shape of hardening given: yield stress and rise; a material file that loads."""
     case, form = study.spring(), Form("voce", 206.0 / 163.0 - 1.0, 293.15)

@@ -160,6 +160,7 @@ def begun(path, out, records, stdout, *options, name="journal.jsonl"):
     return leader, workers_of(leader.pid), journal
 
 
+@pytest.mark.slow
 def test_kill_and_resume_lose_nothing_and_repeat_nothing(write_sweep, tmp_path):
     path = write_sweep("vary: {spring.wire_diameter: {from: 4, to: 5, count: 12}}")
     out = tmp_path / "out"

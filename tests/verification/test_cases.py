@@ -15,13 +15,18 @@ from coilset.verification.page import page
 from coilset.verification.study import Study
 
 FAST = [name for name in registry.names() if registry.load(name).fast]
+LONGER = {
+    "ring-between-plates",
+    "section-elastic",
+    "solid-closed-solutions",
+}  # tests/contact, section, solid have parts
 
 
 def test_the_tables_of_the_thesis_are_among_the_fast_ones():
     assert {"table-4-1", "table-6-1", "table-6-2"} <= set(FAST)
 
 
-@pytest.mark.parametrize("name", FAST)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONGER)) for name in FAST])
 def test_fast_cases_are_within_tolerance(name, tmp_path):
     study = Study(tmp_path)
     registry.load(name).run(study)
