@@ -244,7 +244,7 @@ class Model:
         return replace(self, missing=tuple(found))
 
     def _alike(self, ours: Sequence[np.ndarray], others: Sequence[np.ndarray]) -> bool:
-        """Whether no tester would tell these readings from each other."""
+        """Whether the readings differ by less than a tester resolves."""
         return all(
             float(np.max(np.abs(one - other) / weight)) < SAME
             for one, other, weight in zip(ours, others, self.weights, strict=True)

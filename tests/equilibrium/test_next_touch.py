@@ -33,3 +33,13 @@ def test_elastic_wire_takes_no_steps_to_a_touch(example):
     steps, regular = pressed(example, "material=elastic")
     lengths = np.diff([0.0, *(step.travel_mm for step in steps)]) / regular
     assert lengths[:-1].min() >= 1.0 - 1e-9
+
+
+def test_flat_faces_that_yield_end_a_step_at_their_first_touch(example):
+    """Faces need the guess's rotations, too."""
+    square = "{wire: {rectangle: {width: 5, height: 5}}, mean_diameter: 40, turns: 2.5, pitch: 12}"
+    steps, regular = pressed(example, f"spring={square}", "mesh.section.radial=3", "mesh.section.angular=12")
+    touch = next(number for number, step in enumerate(steps) if step.contacts > 2)
+    lengths = np.diff([0.0, *(step.travel_mm for step in steps)]) / regular
+    assert lengths[touch] == pytest.approx(CROSSING, rel=1e-6)
+    assert not any(step.cuts for step in steps[: touch + 1])

@@ -13,6 +13,7 @@ from petsc4py import PETSc
 
 from coilset.model.base.agreement import max_of_ranks
 from coilset.model.contact.base import Contribution
+from coilset.model.contact.elements import PAIR
 from coilset.model.equilibrium.system.system import System
 
 DEEP = 1e-3  # wire diameters: what the guess closes by less is no first touch, but a contact that spreads
@@ -37,11 +38,13 @@ class NextTouch:
         if not self._limiting:
             return 1.0
         system, values = self.system, guess.getArray(readonly=True)
-        u, moved = system.with_ghosts(values)[system.line.rod.numbering.u], system.line.extra(values)
+        local, moved, rod = system.with_ghosts(values), system.line.extra(values), system.line.rod
+        u, turned = local[rod.numbering.u], local[rod.rotation_dofs] if system.touching.need_rotations else None
         x, seats = system.state["x"].equilibrium, system.state["seats"].equilibrium
 
         def touching(part: float) -> list[Contribution]:
-            trial = system.touching.halo.trial(x + part * u, seats + part * moved)
+            rotations = None if turned is None else part * turned
+            trial = system.touching.halo.trial(x + part * u, seats + part * moved, rotations)
             return [contact.evaluate(trial) for contact in self._limiting]
 
         closed = [sides(found)[found.bears] for found in touching(0.0)]
@@ -53,7 +56,7 @@ class NextTouch:
             ]
             return max_of_ranks(system.comm, max(depths))
 
-        if depth(1.0) <= DEEP * 2.0 * system.line.rod.largest_radius:
+        if depth(1.0) <= DEEP * 2.0 * rod.largest_radius:
             return 1.0
         low, high = 0.0, 1.0
         for _bisection in range(BISECTIONS):
@@ -64,4 +67,5 @@ class NextTouch:
 
 def sides(found: Contribution) -> np.ndarray:
     """A number for each element, the same wherever its point slides on the same side of the same body."""
-    return 2 * found.point + (found.dofs[:, -1] > found.dofs[:, 0])
+    other = min(PAIR // 2, found.dofs.shape[1] - 1)  # first unknown of the other coil
+    return 2 * found.point + (found.dofs[:, other] > found.dofs[:, 0])
