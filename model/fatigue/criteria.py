@@ -36,17 +36,21 @@ def haigh(cycle: Cycle, sensitivity: float) -> np.ndarray:
 
 
 def smith_watson_topper(cycle: Cycle, poisson: float) -> np.ndarray:
-    """√(E σ_max ε̂), greatest of the principal planes of the strain's amplitude (Smith, Watson and Topper 1970).
+    """max over planes of √(E ε̂(n) σ_max(n)) (Smith, Watson and Topper 1970; Bannantine and Socie 1991).
 
-    Elastic: E ε̂ = (1 + ν) n·Ŝ n − ν tr Ŝ. Socie (1987) takes the plane of the greatest amplitude; of the two at ±45°
-    of a spring's wire, whose amplitudes differ by a little bending, that may be the one in compression, and tension on
-    the other one would not count. 0 where σ_max is tensile on none. An amplitude of normal stress.
+    Elastic: E ε̂ = |(1 + ν) n·Ŝ n − ν tr Ŝ|. Compression does not damage (σ_max ≥ 0). Socie (1987) takes the plane of the
+    greatest ε̂ alone: of the two at ±45° to a spring's wire, which a little bending sets apart, that may be the one in
+    compression, and tension on the other one would not count. An amplitude of normal stress.
     """
-    values, vectors = np.linalg.eigh(cycle.amplitude)
-    strain = np.abs((1.0 + poisson) * values - poisson * values.sum(axis=-1, keepdims=True))
-    mean = np.einsum("...ia,...ij,...ja->...a", vectors, cycle.mean, vectors)
-    tension = np.maximum(mean + np.abs(values), 0.0)
-    return np.sqrt((tension * strain).max(axis=-1))
+    flat = cycle.flat()
+    trace = np.trace(flat.amplitude, axis1=1, axis2=2)[:, None]
+
+    def on_planes(normals: np.ndarray, of: slice) -> np.ndarray:
+        swing = normal_stress(flat.amplitude[of], normals)
+        strain = np.abs((1.0 + poisson) * swing - poisson * trace[of])
+        return strain * np.maximum(normal_stress(flat.mean[of], normals) + np.abs(swing), 0.0)
+
+    return np.sqrt(greatest(on_planes, len(flat.mean))).reshape(cycle.shape)
 
 
 def findley(cycle: Cycle, k: float) -> np.ndarray:

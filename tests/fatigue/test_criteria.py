@@ -60,8 +60,6 @@ def test_a_little_bending_hides_no_tension(bending):
 TENSION = 300.0
 CLOSED_BENDING = {
     "haigh": SWING + 0.3 * TENSION / math.sqrt(3.0),
-    # at 45° the static tension is half of itself; both planes have it
-    "smith_watson_topper": math.sqrt((1.0 + NU) * SWING * (0.5 * TENSION + SWING)),
     "dang_van": SWING + A * TENSION / 3.0,
     # across the wire it is all there
     "fatemi_socie": SWING * (1.0 + K * TENSION / YIELD),
@@ -74,12 +72,15 @@ def test_torsion_with_static_bending(name):
     assert CRITERIA[name](cycle) == pytest.approx(CLOSED_BENDING[name], rel=1e-6)
 
 
-def test_findley_under_torsion_with_static_bending():
-    """The planes that contain the radial direction: |a cos 2φ| + k (T cos²φ + |a sin 2φ|), on a fine grid."""
-    angle = np.linspace(0.0, math.pi, 200_001)
-    on_planes = SWING * abs(np.cos(2 * angle)) + K * (TENSION * np.cos(angle) ** 2 + SWING * abs(np.sin(2 * angle)))
-    found = criteria.findley(Cycle(torsion(0.0, TENSION), torsion(SWING)), K)
-    assert found * math.hypot(1.0, K) == pytest.approx(on_planes.max(), rel=1e-6)
+def test_planes_under_torsion_with_static_bending():
+    """Those that contain the radial direction: σ = T cos²φ + |a sin 2φ|, τ̂ = |a cos 2φ|, on a fine grid."""
+    cycle, angle = Cycle(torsion(0.0, TENSION), torsion(SWING)), np.linspace(0.0, math.pi, 200_001)
+    swing = abs(SWING * np.sin(2 * angle))
+    tension = TENSION * np.cos(angle) ** 2 + swing
+    shear = SWING * abs(np.cos(2 * angle)) + K * tension
+    assert criteria.findley(cycle, K) * math.hypot(1.0, K) == pytest.approx(shear.max(), rel=1e-6)
+    product = (1.0 + NU) * swing * tension
+    assert criteria.smith_watson_topper(cycle, NU) == pytest.approx(math.sqrt(product.max()), rel=1e-6)
 
 
 def test_reversed_bending_and_torsion_are_endured_at_their_limits():
@@ -90,19 +91,24 @@ def test_reversed_bending_and_torsion_are_endured_at_their_limits():
     for cycle in (bend, twist):
         assert criteria.findley(cycle, k) == pytest.approx(shear, rel=1e-6)
         assert criteria.dang_van(cycle, a) == pytest.approx(shear, rel=1e-9)
-    assert criteria.smith_watson_topper(bend, NU) == pytest.approx(normal)
+    assert criteria.smith_watson_topper(bend, NU) == pytest.approx(normal, rel=1e-6)
     with pytest.raises(ValueError, match="ratio"):
         findley_k(400.0, 900.0)
 
 
 def test_a_search_over_all_planes_and_moments_finds_the_same(random):
     normals = brute.planes(2.0)
-    findley, dang_van = criteria.findley(random, K) * math.hypot(1.0, K), criteria.dang_van(random, A)
+    found = {
+        "findley": criteria.findley(random, K) * math.hypot(1.0, K),
+        "dang_van": criteria.dang_van(random, A),
+        "smith_watson_topper": criteria.smith_watson_topper(random, NU),
+    }
     for number in range(3):
         path = brute.path(random.mean[number], random.amplitude[number], 9)
-        assert brute.findley(path, K, normals) == pytest.approx(findley[number], rel=1.5e-3)
-        assert brute.findley(path, K, normals) <= findley[number] * (1.0 + 1e-6)
-        assert brute.dang_van(path, A, normals) == pytest.approx(dang_van[number], rel=1.5e-3)
+        for (name, values), constant in zip(found.items(), (K, A, NU), strict=True):
+            searched = getattr(brute, name)(path, constant, normals)
+            assert searched == pytest.approx(values[number], rel=1.5e-3)
+            assert searched <= values[number] * (1.0 + 1e-6)
 
 
 @pytest.mark.parametrize("name", CRITERIA)

@@ -1,4 +1,4 @@
-"""Findley's and Dang Van's criteria by brute force: every plane, every moment of the cycle, vectors only."""
+"""Criteria of fatigue by brute force: every plane, every moment of the cycle, vectors only."""
 
 import numpy as np
 
@@ -36,3 +36,11 @@ def dang_van(stress: np.ndarray, a: float, normals: np.ndarray) -> float:
     centre = 0.5 * (shear[0] + shear[-1])
     hydrostatic = np.trace(stress, axis1=1, axis2=2) / 3.0
     return float((np.linalg.norm(shear - centre, axis=-1) + a * hydrostatic[:, None]).max())
+
+
+def smith_watson_topper(stress: np.ndarray, poisson: float, normals: np.ndarray) -> float:
+    """max of half the range of E times the normal strain, by Hooke's law, times the greatest normal stress; its root."""
+    sums = np.trace(stress, axis1=1, axis2=2)[:, None, None]
+    strain, _ = on_planes((1.0 + poisson) * stress - poisson * sums * np.eye(3), normals)
+    normal, _ = on_planes(stress, normals)
+    return float(np.sqrt(np.max(0.5 * np.ptp(strain, axis=0) * np.maximum(normal.max(axis=0), 0.0))))
