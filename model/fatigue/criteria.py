@@ -38,9 +38,9 @@ def haigh(cycle: Cycle, sensitivity: float) -> np.ndarray:
 def smith_watson_topper(cycle: Cycle, poisson: float) -> np.ndarray:
     """max over planes of √(E ε̂(n) σ_max(n)) (Smith, Watson and Topper 1970; Bannantine and Socie 1991).
 
-    Elastic: E ε̂ = |(1 + ν) n·Ŝ n − ν tr Ŝ|. Compression does not damage (σ_max ≥ 0). Socie (1987) takes the plane of the
-    greatest ε̂ alone: of the two at ±45° to a spring's wire, which a little bending sets apart, that may be the one in
-    compression, and tension on the other one would not count. An amplitude of normal stress.
+    Elastic: E ε̂ = |(1 + ν) n·Ŝ n − ν tr Ŝ|. Compression does not damage (σ_max ≥ 0). Socie (1987) takes the plane of
+    the greatest ε̂ alone: of the two at ±45° to a spring's wire, which a little bending sets apart, that may be the one
+    in compression, and tension on the other one would not count. An amplitude of normal stress.
     """
     flat = cycle.flat()
     trace = np.trace(flat.amplitude, axis1=1, axis2=2)[:, None]

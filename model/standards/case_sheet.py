@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 
 from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError
@@ -71,11 +72,11 @@ def case_sheet(
     )
     if lengths:
         return made
+    if case.working:
+        given = (*case.working.lengths, *map(made.length, case.working.forces))
+        low, high = (cylinder.length, inf) if made.pulled else (cylinder.solid, cylinder.length)
+        return replace(made, lengths=tuple(one for one in given if low < one < high))
     if made.pulled:
         return replace(made, lengths=tuple(pulled_lengths(case, spring)))
-    if case.working:
-        of_forces = [cylinder.length - force / made.rate for force in case.working.forces]
-        given = (*case.working.lengths, *of_forces)
-        return replace(made, lengths=tuple(one for one in given if cylinder.solid < one < cylinder.length))
     planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
     return replace(made, lengths=tuple(planned))

@@ -1,7 +1,7 @@
 """Quantities of the formulas as found in a results folder."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +28,7 @@ class Found:
             points and over the middle half of the turns; negative if it opposes the load's stress.
         ring: radius of that ring over the wire's radius.
         growth: of the mean diameter at the minimum height of a snapshot, over whole turns, about the middle half, mm.
+        turns, torques: of the heads after each step, degrees and N mm; None unless they turn.
     """
 
     summary: dict[str, Any]
@@ -36,6 +37,8 @@ class Found:
     residual: float | None
     ring: float | None
     growth: float | None = None
+    turns: np.ndarray | None = None
+    torques: np.ndarray | None = None
 
     def get(self, name: str) -> float | None:
         """An entry of the summary; None if it is missing."""
@@ -50,15 +53,14 @@ class Found:
         for state in self.summary.get("working") or ():
             if state.get("length_wanted") == length and not state["reason"]:
                 return float(state["force_N"])
-        near = ROUNDING * self.heights[0]
-        high, low = np.maximum(self.heights[1:], self.heights[:-1]), np.minimum(self.heights[1:], self.heights[:-1])
-        passed = np.flatnonzero((low <= length + near) & (length - near <= high))
-        if len(passed) == 0:
+        return _last(self.heights, self.forces, length, ROUNDING * self.heights[0])
+
+    def torque_at(self, turn: float) -> float | None:
+        """Torque when the heads last passed a rotation, N mm; positive ones in the sense of the largest, degrees."""
+        if self.turns is None or self.torques is None:
             return None
-        i = passed[-1]
-        way = self.heights[i + 1] - self.heights[i]
-        fraction = np.clip((length - self.heights[i]) / way, 0.0, 1.0) if way else 1.0  # of a hold, its end
-        return float(self.forces[i] + fraction * (self.forces[i + 1] - self.forces[i]))
+        sense = float(np.sign(self.turns[np.argmax(np.abs(self.turns))]))
+        return _last(sense * self.turns, sense * self.torques, turn, ROUNDING * float(np.ptp(self.turns)))
 
     def work_to(self, length: float) -> float | None:
         """Work of the first compression to a length, ∫ F ds, N mm; None if the first compression did not reach it."""
@@ -69,6 +71,18 @@ class Found:
         grid: np.ndarray = np.append(heights[heights > length], length)
         values = np.interp(-grid, -heights, forces)
         return float(0.5 * np.sum((values[1:] + values[:-1]) * -np.diff(grid)))
+
+
+def _last(at: np.ndarray, values: np.ndarray, wanted: float, near: float) -> float | None:
+    """Value when `at` last passed, or stood at, what is wanted; None if it never did."""
+    high, low = np.maximum(at[1:], at[:-1]), np.minimum(at[1:], at[:-1])
+    passed = np.flatnonzero((low <= wanted + near) & (wanted - near <= high))
+    if len(passed) == 0:
+        return None
+    i = passed[-1]
+    way = at[i + 1] - at[i]
+    fraction = np.clip((wanted - at[i]) / way, 0.0, 1.0) if way else 1.0  # of a hold, its end
+    return float(values[i] + fraction * (values[i + 1] - values[i]))
 
 
 def read(folder: str | Path) -> Found:
@@ -95,7 +109,11 @@ def read(folder: str | Path) -> Found:
     if missing:
         raise InputError(f"is not a result of coilset solve ({missing!r})", "", folder)
     heights, forces = history.numbers("seat_height_mm"), history.numbers("force_N")
-    return Found(summary, np.append(before, heights), np.append(0.0, forces), *_points(folder / "points.nc"))
+    found = Found(summary, np.append(before, heights), np.append(0.0, forces), *_points(folder / "points.nc"))
+    if summary.get("turn_max_deg") is None:
+        return found
+    turns, torques = (np.append(0.0, history.numbers(name)) for name in ("turn_deg", "torque_Nmm"))
+    return replace(found, turns=turns, torques=torques)
 
 
 def _points(path: Path) -> tuple[float | None, float | None, float | None]:

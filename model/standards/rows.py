@@ -114,9 +114,9 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
         why = "with the wire's pitch and curvature"
         yield Row("  with hooks", sheet.pull_rate, "N/mm", "1/(1/R + ∫ m²/(E I, G J) ds)", DERIVED, opened, why)
     if sheet.tension:
-        found, after = sheet.at_run("initial_tension_N"), sheet.at_run("initial_tension_after_N")
-        why = "" if after is None else f"{after:.4g} N after the last release"
-        yield Row("initial tension F0", sheet.tension, "N", "", GIVEN, found, why)
+        first, after = sheet.at_run("initial_tension_N"), sheet.at_run("initial_tension_after_N")
+        why = "" if after is None else f"after the last release; {first:.4g} N before"
+        yield Row("initial tension F0", sheet.tension, "N", "", GIVEN, first if after is None else after, why)
         τ0 = en13906.stress(sheet.tension, s.d, s.D)
         yield Row("  stress τ0", τ0, "MPa", "8 D F0/(π d³)", DERIVED)
     if s.wire:
@@ -143,20 +143,19 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
     why = "with the wire's pitch and curvature"
     turned = run("turn_rate_Nmm_per_deg")
     yield Row("rate R", rate, "N mm/°", "E d⁴/(3667 D n)", DERIVED, None if sheet.beyond else turned, why)
+    rate = sheet.turn_rate
     if sheet.on_point:
-        rate = 1.0 / degrees(sheet.on_point.compliance)
         why = "without an arbor, which would take a part of the side force"
         yield Row("  with an arm on a point", rate, "N mm/°", "1/∫ m²/(E I, G J) ds, m = F a", DERIVED, turned, why)
         yield Row("  lever of its force F", sheet.on_point.lever, "mm", "h, about the axis", DERIVED)
     elif sheet.beyond:
-        rate = 1.0 / (1.0 / rate + degrees(sheet.beyond))
         yield Row("  with clamped arms", rate, "N mm/°", "1/(1/R + ∫ ds/(E I, G J))", DERIVED, turned, why)
     yield Row("stress factor q", q, "", "(4 w² − w − 1)/(4 w (w − 1))", DERIVED)
     most = max(sheet.turns_to, key=abs)
     for turn in sheet.turns_to:
         torque, largest = rate * abs(turn), turn == most
         σ, flow = en13906.bending_stress(torque, s.d), "less where the wire yields, more on an arbor"
-        found = run("torque_max_Nmm") if largest else None
+        found = sheet.found.torque_at(turn * (1.0 if most > 0.0 else -1.0)) if sheet.found else None
         yield Row(f"torque at {turn:.4g}°", torque, "N mm", "R α", DERIVED, None if found is None else abs(found), flow)
         formula = "32 M/(π d³)"
         if sheet.on_point:

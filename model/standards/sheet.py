@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import degrees
 
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case import Case
@@ -69,6 +70,14 @@ class Sheet:
         """R with hooks, N/mm."""
         return 1.0 / (1.0 / self.rate + self.beyond)
 
+    @property
+    def turn_rate(self) -> float:
+        """R of a torsion spring with its arms, N mm/°."""
+        if self.on_point:
+            return 1.0 / degrees(self.on_point.compliance)
+        body = en13906.turn_rate(self.elastic.young_modulus, self.spring.d, self.spring.D, self.spring.n)
+        return 1.0 / (1.0 / body + degrees(self.beyond))
+
     def force(self, length: float) -> float:
         """Nominal force at a length, N: R (L0 − L), or that of coils of variable pitch, which close one by one.
 
@@ -80,6 +89,12 @@ class Sheet:
         if not self.spring.pitches:
             return self.rate * travel
         return self.spring.series_force(travel, self.rate * self.spring.n)
+
+    def length(self, force: float) -> float:
+        """Nominal length under a force, mm, by the rate."""
+        if self.pulled:
+            return self.spring.length - (force + self.tension) / self.pull_rate
+        return self.spring.length - force / self.rate
 
     @property
     def force_formula(self) -> str:

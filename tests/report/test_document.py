@@ -95,6 +95,7 @@ def test_an_extension_spring_is_drawn_with_the_forces_of_its_table():
     assert points["y"] == pytest.approx([exact])
     levels = [text.text for text in found.drawing.texts]
     assert {"L0 = 95.48", "LK = 33", "L1 = 195.5   F1 = 312.9 N"} <= set(levels)
+    assert WRITERS[".html"](found).decode().count("<svg") == 1  # the diagram is beside the table
     outline = np.concatenate([line for line, layer in found.drawing.lines if layer == "OUTLINE"])
     assert np.ptp(outline[:, 1]) == pytest.approx(95.48 + 2 * 3.0, abs=0.02)  # L0 is between the insides of the hooks
     assert ("top hook", "german") in [(line.label, line.value) for line in found.tables[0][1]]
@@ -112,6 +113,44 @@ def test_a_torsion_spring_has_its_arms_on_one_page():
     outline = np.concatenate([line for line, layer in found.drawing.lines if layer == "OUTLINE"])
     assert max(outline[:, 0]) - min(text.x for text in lengths) > 30.0
     assert WRITERS[".html"](found).decode().count("<svg") == 1
+
+
+def test_wound_coils_of_a_run_open_at_what_remains_of_their_initial_tension(tmp_path):
+    """Steps at 100 and 40 N on F0' + R s with F0' = 10 N, R = 3 N/mm: the curve has F0' where the line ends."""
+    case = read_case(EXAMPLES / "springs" / "extension.yaml", ["working={lengths: [120]}"])
+    spring = case.spring.build()
+    summary = {"free_length_before_mm": 95.5, "free_length_after_mm": 96.0, "set_mm": -0.5}
+    summary |= {"initial_tension_N": 25.0, "initial_tension_after_N": 10.0}
+    (tmp_path / "summary.json").write_text(json.dumps(summary))
+    (tmp_path / "history.csv").write_text("seat_height_mm,force_N\n127,-100\n107,-40\n96,0\n")
+    found = document(case, spring, case_sheet(case, spring, from_results.read(tmp_path)), "", (), Words("en"))
+    _, run, points = found.panels[0].traces
+    assert run["y"][:2] == pytest.approx([0.0, 10.0])
+    assert run["x"][1] == pytest.approx(11.0 - 30.0 / 3.0)
+    assert points["y"] == pytest.approx([40.0 + 13.0 * 3.0])
+
+
+def test_torque_over_rotation_has_the_run_and_its_limits(tmp_path):
+    """Of a left-handed spring that sets by 10° on its way to 200°; it last passes 100° on the way back."""
+    settings = ["spring.hand=left", "limits={torque_max: [-4900, -4700]}"]
+    settings += ["loading=[{to: {top: {turn: -200}}}, {to: {top: {torque: 0}}}, {to: {top: {turn: -100}}}]"]
+    case = read_case(EXAMPLES / "springs" / "torsion.yaml", settings)
+    spring = case.spring.build()
+    summary = {"free_length_before_mm": 25.0, "turn_max_deg": -200.0, "torque_max_Nmm": -4800.0, "turn_set_deg": -10.0}
+    (tmp_path / "summary.json").write_text(json.dumps(summary))
+    rows = ["25,0,-200,-4800", "25,0,-10,0", "25,0,-100,-2250"]
+    (tmp_path / "history.csv").write_text("\n".join(["seat_height_mm,force_N,turn_deg,torque_Nmm", *rows]))
+    sheet = case_sheet(case, spring, from_results.read(tmp_path))
+    found = document(case, spring, sheet, "", (), Words("de"))
+    (panel,) = found.panels
+    assert (panel.title, panel.layout["yaxis"]["title"]["text"]) == ("Moment über Drehwinkel", "Moment, N mm")
+    formula, run, limits, points = panel.traces
+    assert formula["y"][-1] == pytest.approx(200.0 * sheet.turn_rate)
+    assert (run["x"][-1], run["y"][-1]) == pytest.approx((100.0, 2250.0))
+    assert (limits["x"], limits["y"]) == ([200.0, 200.0], [4700.0, 4900.0])
+    assert points["y"] == pytest.approx([4800.0, 2250.0])
+    values = {line.label.strip(): line.found for _, lines in found.tables for line in lines}
+    assert (values["Moment bei 100°"], values["größtes Moment des Laufs"]) == ("2250", "4800")
 
 
 def test_a_page_is_self_contained_and_escaped():

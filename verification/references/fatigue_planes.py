@@ -39,7 +39,7 @@ def dang_van(stress: np.ndarray, a: float, normals: np.ndarray) -> float:
 
 
 def smith_watson_topper(stress: np.ndarray, poisson: float, normals: np.ndarray) -> float:
-    """max of half the range of E times the normal strain, by Hooke's law, times the greatest normal stress; its root."""
+    """Root of the max of half the range of E times the normal strain (Hooke) times the greatest normal stress."""
     sums = np.trace(stress, axis1=1, axis2=2)[:, None, None]
     strain, _ = on_planes((1.0 + poisson) * stress - poisson * sums * np.eye(3), normals)
     normal, _ = on_planes(stress, normals)

@@ -4,16 +4,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case import Case
 from coilset.model.case.sheet import SheetSpec
-from coilset.model.figures.panels.characteristic import smooth
-from coilset.model.figures.panels.goodman import goodman
-from coilset.model.figures.panels.panel import GREY, Panel, Trace, axis, curve
+from coilset.model.figures.panels.panel import Panel
+from coilset.model.report.document.diagrams import diagrams
 from coilset.model.report.document.view import Drawing, Level, view
 from coilset.model.report.document.words import Words
+from coilset.model.results.files.opened import is_turned
 from coilset.model.results.limits import case_limits
 from coilset.model.results.records.record import Limit
 from coilset.model.results.records.units import quantity
@@ -29,9 +27,14 @@ FINISHED = {
     "residual_shear_inside_MPa": ("residual shear stress, inside", "MPa"),
     "force_max_N": ("greatest force of the run", "N"),
 }
+TURNED = {
+    "turn_set_deg": ("set", "°"),
+    "residual_bending_inside_MPa": ("residual bending stress, inside", "MPa"),
+    "residual_bending_outside_MPa": ("residual bending stress, outside", "MPa"),
+    "torque_max_Nmm": ("greatest torque of the run", "N mm"),
+}
 TAILS = ("hooks", "arms")
 ALL = ("all", "all others")  # rows of what a table has not
-POINTS = 200  # of the formula's curve
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,7 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
         shown,
         [(title, lines) for title, lines in tables if lines],
         bool(run),
-        [_translated(panel, words) for panel in _panels(sheet, limits)],
+        [_translated(panel, words) for panel in diagrams(sheet, limits)],
         [*missing, *remarks],
         words,
     )
@@ -167,9 +170,9 @@ def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Itera
 def _finished(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """What only a run has: the set, residual stress, and the true stress at the working lengths with its safety."""
     number = words.number
-    for name, (label, unit) in FINISHED.items():
-        if summary.get(name) is not None:
-            yield Line(words(label), "", number(summary[name]), unit)
+    for name, (label, unit) in (TURNED if is_turned(summary) else FINISHED).items():
+        if (value := summary.get(name)) is not None:
+            yield Line(words(label), "", number(value if "set" in name or "residual" in name else abs(value)), unit)
     for state in summary.get("working") or ():
         if "length_wanted" in state and not state["reason"]:
             place = f"{state['length_wanted']:g} mm"
@@ -187,8 +190,9 @@ def _fatigue(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
 
 
 def _free_length(sheet: Sheet) -> float:
-    """After the run, or as drawn; mm."""
-    return min(sheet.at_run("free_length_after_mm") or sheet.spring.length, sheet.spring.length)
+    """After the run, or as drawn; mm. Coils that are not pulled are drawn no longer than they were wound."""
+    after = sheet.at_run("free_length_after_mm") or sheet.spring.length
+    return after if sheet.pulled else min(after, sheet.spring.length)
 
 
 def _shown(sheet: Sheet, spring: Spring) -> Spring:
@@ -214,7 +218,7 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
         return number(value) if spread is None else f"{number(value)} ± {number(spread, 2)}"
 
     free_text = about(free, "free_length_after_mm", given.free_length if given else None)
-    levels, loads = [Level(free, f"L0 = {free_text}", spring.levels[0])], []
+    levels, loads = [Level(sheet.spring.length if sheet.pulled else free, f"L0 = {free_text}", spring.levels[0])], []
     for k, length in enumerate(sorted(sheet.lengths, reverse=not sheet.pulled)[: MOST_LEVELS - 1], 1):
         force = sheet.found.force_at(length) if sheet.found else None
         force = sheet.force(length) if force is None else force
@@ -243,58 +247,6 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
     return view(
         spring, levels, widths, f"d = {wire}" + (f" ± {number(tolerance, 2)}" if tolerance else ""), notes, number
     )
-
-
-def _panels(sheet: Sheet, limits: Mapping[str, Limit]) -> Iterator[Panel]:
-    if sheet.turns_to:
-        return
-    yield _characteristic(sheet, limits)
-    if sheet.wire and sheet.endured and sheet.cycle:
-        residual = sheet.found.residual if sheet.found else None
-        made = goodman(f"{sheet.wire.name}", sheet.endured, sheet.cycle, residual)
-        yield replace(made, title="Goodman diagram")
-
-
-def _characteristic(sheet: Sheet, limits: Mapping[str, Limit]) -> Panel:
-    """Force over the travel of the spring as it is drawn: the finished one of a run."""
-    s, sign = sheet.spring, -1.0 if sheet.pulled else 1.0
-    far = max(sheet.lengths, default=s.length) if sheet.pulled else s.solid
-    lengths = np.linspace(s.length, far, POINTS)
-    forces = [sheet.force(length) for length in lengths]
-    after = sheet.at_run("free_length_after_mm") or s.length
-    traces = [curve(sign * (s.length - lengths), sign * np.array(forces), GREY, dash="dash", name="by the formula")]
-    if sheet.found:
-        x, y = _last_way(sheet.found.heights, sheet.found.forces)
-        traces.append(curve(*smooth(sign * (after - x), sign * y), 0, name="by the run"))
-    points = []
-    for length in sheet.lengths:
-        force = sheet.found.force_at(length) if sheet.found else None
-        travel = sign * ((s.length if force is None else after) - length)
-        points.append((travel, sign * (sheet.force(length) if force is None else force)))
-        if limit := limits.get(number_name("force", length)):
-            ends = [sign * limit.low, sign * limit.high]
-            traces.append(curve([travel] * 2, ends, 1, marker=7, name="limits", showlegend=limit is _first(limits)))
-    if points:
-        marker: Trace = {"size": 8, "symbol": "square", "color": "#009e73"}
-        x, y = np.array(points).T
-        traces.append(
-            {"type": "scatter", "mode": "markers", "x": x, "y": y, "marker": marker, "name": "working points"}
-        )
-    layout = {"xaxis": axis("travel, mm"), "yaxis": axis("force, N", rangemode="tozero")}
-    return Panel("force", "Force over travel", "Force over travel", traces, layout)
-
-
-def _first(limits: Mapping[str, Limit]) -> Limit | None:
-    return next((limit for name, limit in limits.items() if name.startswith("force_at_")), None)
-
-
-def _last_way(heights: np.ndarray, forces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Heights and forces of the last monotone part of the history, the last release of a spring that was released."""
-    ways = np.sign(np.diff(heights))
-    turned = np.flatnonzero(ways[1:] * ways[:-1] < 0.0)
-    start = turned[-1] + 1 if len(turned) else 0
-    kept = np.isfinite(forces[start:])
-    return heights[start:][kept], forces[start:][kept]
 
 
 def _translated(panel: Panel, words: Words) -> Panel:

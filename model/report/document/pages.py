@@ -17,6 +17,8 @@ INCH = 25.4
 POINT = 72.0 / INCH  # points to a mm
 HEAD = 44.0  # mm of the head of the first page
 SMALL, PITCH = 6.6, 3.75  # points of the tables, mm of a line
+REMARK = 2.9  # mm of a line of the remarks
+BESIDE = 75.0  # mm of a diagram beside the table
 COLUMN = 0.5 * (WIDTH - 2 * MARGIN - 6.0)
 WEIGHTS = {"OUTLINE": 0.9, "AXIS": 0.5, "DIMENSION": 0.4}
 STYLES = {"OUTLINE": "-", "AXIS": (0, (10, 3, 2, 3)), "DIMENSION": "-"}
@@ -29,22 +31,27 @@ def pages(made: Document) -> list[Figure]:
     with mpl.rc_context(STYLE):
         first, axes = _page(made)
         _head(axes, made)
-        bottom = _drawing(axes, made.drawing, HEIGHT - MARGIN - HEAD)
+        bottom = _drawing(axes, made.drawing, HEIGHT - MARGIN - HEAD) - 6.0
         _numbers(axes, made)
-        rest = _columns(axes, list(_items(made)), bottom - 6.0, made)
-        if not rest and not made.panels:
+        items, remarks = list(_items(made)), _remark_lines(made)
+        room = bottom - MARGIN - REMARK * (len(remarks) + 1 if remarks else 0)
+        if max(_height(items), len(made.panels) * BESIDE) < room:
+            _columns(axes, items, bottom, made)
+            _diagrams(first, made, bottom, 1, BESIDE, MARGIN + COLUMN + 6.0)
             _number(axes, made, 1, 1)
-            _remarks(axes, made)
+            _remarks(axes, made, remarks)
             return [first]
+        rest = _columns(axes, items, bottom, made)
         _number(axes, made, 1, 2)
         second, axes = _page(made)
         _number(axes, made, 2, 2)
         top = HEIGHT - MARGIN - 6.0
         axes.text(MARGIN, top + 3.0, f"{made.title} {dict(made.head).get(made.words('part'), '')}".strip(), fontsize=9)
         if made.panels:
-            top = _diagrams(second, made, top, bool(rest))
+            columns, high = (len(made.panels), 80.0) if rest else (1, 115.0)
+            top = _diagrams(second, made, top, columns, high)
         rest = _columns(axes, rest, top - 6.0, made)
-        _remarks(axes, made)
+        _remarks(axes, made, remarks)
     return [first, second]
 
 
@@ -113,9 +120,14 @@ def _columns(axes: Axes, items: Sequence[Item], top: float, made: Document) -> l
         y = top
         while rest and y - _group(rest) * PITCH > MARGIN:
             title, line = rest.pop(0)
-            y -= PITCH * (1.0 if line else 1.4)
+            y -= _height([(title, line)])
             _row(axes, left, y, title, line, made)
     return rest
+
+
+def _height(items: Sequence[Item]) -> float:
+    """Of so many lines in one column, mm."""
+    return PITCH * sum(1.0 if line else 1.4 for _, line in items)
 
 
 def _group(items: Sequence[Item]) -> float:
@@ -147,13 +159,12 @@ def _row(axes: Axes, left: float, y: float, title: str, line: Line | None, made:
     axes.plot([left, left + COLUMN], [y - 0.9] * 2, color="0.85", lw=0.3)
 
 
-def _diagrams(figure: Figure, made: Document, top: float, beside: bool) -> float:
-    """The diagrams beside each other, or below each other on a page of their own; returns the level they end at."""
-    columns = len(made.panels) if beside else 1
-    high, wide = 80.0 if beside else 115.0, (WIDTH - 2 * MARGIN) / columns
+def _diagrams(figure: Figure, made: Document, top: float, columns: int, high: float, start: float = MARGIN) -> float:
+    """The diagrams in columns, `high` mm each, from a left edge on; returns the level they end at."""
+    wide = (WIDTH - MARGIN - start) / columns
     for k, panel in enumerate(made.panels):
         row, column = divmod(k, columns)
-        left, low = MARGIN + column * wide + 13.0, top - (row + 1) * high + 12.0
+        left, low = start + column * wide + 13.0, top - (row + 1) * high + 12.0
         axes = figure.add_axes((left / WIDTH, low / HEIGHT, (wide - 18.0) / WIDTH, (high - 20.0) / HEIGHT))
         draw(axes, panel)
         axes.set_title(panel.title, fontsize=8.5)
@@ -167,12 +178,15 @@ def _diagrams(figure: Figure, made: Document, top: float, beside: bool) -> float
     return top - high * -(-len(made.panels) // columns)
 
 
-def _remarks(axes: Axes, made: Document) -> None:
+def _remark_lines(made: Document) -> list[str]:
+    return [part for text in made.remarks for part in textwrap.wrap(f"– {text}", 150, subsequent_indent="   ")]
+
+
+def _remarks(axes: Axes, made: Document, lines: Sequence[str]) -> None:
     """At the foot of the last page."""
-    lines = [part for text in made.remarks for part in textwrap.wrap(f"– {text}", 150, subsequent_indent="   ")]
-    y = MARGIN + 1.0 + 2.9 * len(lines)
+    y = MARGIN + 1.0 + REMARK * len(lines)
     if not lines:
         return
     axes.text(MARGIN, y, made.words("Remarks"), fontsize=SMALL, weight="bold")
     for k, line in enumerate(lines, 1):
-        axes.text(MARGIN, y - 2.9 * k, line, fontsize=5.8)
+        axes.text(MARGIN, y - REMARK * k, line, fontsize=5.8)
