@@ -399,7 +399,7 @@ def design(
 
 @app.command()
 def compare(
-    folder: str = typer.Argument(help="folder of a measured spring: case.yaml, measured.csv"),
+    folder: str = typer.Argument(help="folder of a measured spring or nest: case.yaml or nest.yaml, and measured.csv"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/compare/NAME]"),
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
 ) -> None:

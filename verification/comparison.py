@@ -4,28 +4,38 @@ A folder holds `case.yaml` and `measured.csv`, one measured number a row: `quant
 unit), and where it needs them `travel_mm` and `phase` (of a `force_N`, phases from 1 on), `turn`, `angle` and `spot`
 (of a residual stress such as `stress_+45°_MPa`). Other quantities are numbers of summary.json. A number is met if
 measured and computed differ by no more than both errors together.
+
+A folder with `nest.yaml` in place of the case is that of two springs between the same seats, whose travel counts from
+the height at which they touch the longer one. Numbers of one of them begin with its name, as in `outer.set_mm`.
 """
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.interpolate import PchipInterpolator
 
 import coilset.open
-from coilset.api import Case, Result, solve
+from coilset.api import Case, solve
 from coilset.model.base.columns import Columns, number, read_columns
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
+from coilset.model.nest.file import NAMES, read_nest
+from coilset.model.nest.nest import press
+from coilset.model.nest.output import write
 from coilset.model.results.diffraction import DIRECTIONS
 from coilset.model.results.records.summary_entries import NUMBERS
 
 DRAWN = 121  # points of a phase's characteristic
-CASE, MEASURED, COLUMNS = "case.yaml", "measured.csv", "quantity, value, error"
+CASE, NEST, MEASURED, COLUMNS = "case.yaml", "nest.yaml", "measured.csv", "quantity, value, error"
 FORCE, STRESSES = "force_N", {f"stress_{name}_MPa": name for name in DIRECTIONS}
+OF_NEST = ("free_length_before_mm", "free_length_after_mm", "set_mm", "block_height_mm", "force_max_N")
 ERRORS = {
     "force_N": "estimated_force_error_N",
     "force_max_N": "estimated_force_error_N",
@@ -82,7 +92,7 @@ def compare(folder: str | Path, results: str | Path, overwrite: bool = False) ->
     """Run the case of a folder and compare it with what was measured.
 
     Args:
-        folder: with case.yaml and measured.csv.
+        folder: with case.yaml or nest.yaml, and measured.csv.
         results: folder for the run.
         overwrite: replace results that it holds.
 
@@ -90,31 +100,76 @@ def compare(folder: str | Path, results: str | Path, overwrite: bool = False) ->
         InputError: if a file is missing or wrong, or a quantity is none that the run has.
         SolveError: if the run finds no equilibrium.
     """
-    folder = Path(folder)
-    table = _checked(read_columns(folder / MEASURED))
+    folder, results = Path(folder), Path(results)
+    nested = (folder / NEST).is_file()
+    table = _checked(read_columns(folder / MEASURED), nested)
+    run = (_nest if nested else _case)(folder, results, overwrite)
+    return Comparison(
+        [_compared(table, row, line, run) for line, row in table.rows],
+        [np.array([way, [run.force_at(one, phase) for one in way.tolist()]]) for phase, way in run.ways],
+        run.error("force_max_N"),
+    )
+
+
+@dataclass(frozen=True)
+class _Run:
+    """What a comparison asks of a run.
+
+    Attributes:
+        summary: its numbers.
+        force_at: force at a travel in a phase, from 0 on.
+        ways: each phase, and travels at equal distances over it.
+        folder: of its results, where stresses are computed from; None of a nest.
+    """
+
+    summary: Mapping[str, Any]
+    force_at: Callable[[float, int], float]
+    ways: list[tuple[int, np.ndarray]]
+    folder: Path | None = None
+
+    def error(self, quantity: str) -> float:
+        """As the run estimates it; NaN where it does not."""
+        of, _, name = quantity.rpartition(".")
+        found = (self.summary[of] or {} if of else self.summary).get(ERRORS.get(name, ""))
+        return abs(float(found)) if isinstance(found, int | float) else float("nan")
+
+
+def _case(folder: Path, results: Path, overwrite: bool) -> _Run:
     result = solve(Case.read(folder / CASE))
     result.save(results, overwrite)
-    rows = [_compared(table, row, line, result, Path(results)) for line, row in table.rows]
-    return Comparison(rows, _characteristic(result), _error(result, "force_max_N"))
-
-
-def _characteristic(result: Result) -> list[np.ndarray]:
-    travel, of_step = np.append(0.0, result.travel), result.data["phase"].to_numpy()
-    found = []
+    travel, of_step, ways = np.append(0.0, result.travel), result.data["phase"].to_numpy(), []
     for phase in np.unique(of_step).tolist():
         rows = np.flatnonzero(of_step == phase)
-        reached = travel[rows[0] : rows[-1] + 2]
-        way = np.linspace(reached.min(), reached.max(), DRAWN)
-        found.append(np.array([way, [result.force_at(one, phase) for one in way.tolist()]]))
-    return found
+        ways.append((phase, _drawn(travel[rows[0] : rows[-1] + 2])))
+    return _Run(result.summary, result.force_at, ways, results)
 
 
-def _error(result: Result, quantity: str) -> float:
-    found = result.summary.get(ERRORS.get(quantity, ""))
-    return abs(float(found)) if isinstance(found, int | float) else float("nan")
+def _nest(folder: Path, results: Path, overwrite: bool) -> _Run:
+    pressed = press(read_nest(folder / NEST))
+    found = write(results, pressed, overwrite)
+    members = [found[name] for name in NAMES if found[name]]
+    for name, whole in (("estimated_force_error_N", sum), ("estimated_set_error_mm", max)):
+        errors = [one.get(name) for one in members]
+        found[name] = None if None in errors else whole(map(abs, errors))
+    travel, first, parts = pressed.plan.free_length - pressed.plan.heights, 0, []
+    for last in pressed.plan.ends:
+        parts.append((travel[first : last + 1], pressed.force[first : last + 1]))
+        first = last
+
+    def force_at(at: float, phase: int) -> float:
+        if not 0 <= phase < len(parts) or not parts[phase][0].min() <= at <= parts[phase][0].max():
+            raise InputError(f"the nest does not reach a travel of {at:g} mm in phase {phase + 1}", "", folder / MEASURED)
+        way = np.argsort(parts[phase][0])
+        return float(PchipInterpolator(*(part[way] for part in parts[phase]))(at))
+
+    return _Run(found, force_at, [(phase, _drawn(way)) for phase, (way, _) in enumerate(parts)])
 
 
-def _checked(table: Columns) -> Columns:
+def _drawn(travel: np.ndarray) -> np.ndarray:
+    return np.linspace(travel.min(), travel.max(), DRAWN)
+
+
+def _checked(table: Columns, nested: bool) -> Columns:
     for name in ("quantity", "value", "error"):
         if name not in table.names:
             raise table.lacks(name, COLUMNS)
@@ -122,6 +177,8 @@ def _checked(table: Columns) -> Columns:
     if not len(values) or (errors < 0.0).any():
         raise InputError("give one measured number at least, and its error, 0 or more", "", table.path)
     known = [FORCE, *STRESSES, *NUMBERS]
+    if nested:
+        known = [FORCE, *OF_NEST, *(f"{name}.{one}" for name in NAMES for one in NUMBERS)]
     for line, row in table.rows:
         quantity = row["quantity"].strip()
         if quantity not in known:
@@ -146,7 +203,7 @@ def _given(table: Columns, row: dict[str, str], line: int, name: str, otherwise:
     return value
 
 
-def _compared(table: Columns, row: dict[str, str], line: int, result: Result, folder: Path) -> Compared:
+def _compared(table: Columns, row: dict[str, str], line: int, run: _Run) -> Compared:
     name = quantity = row["quantity"].strip()
 
     def given(column: str, *otherwise: float) -> float:
@@ -155,18 +212,19 @@ def _compared(table: Columns, row: dict[str, str], line: int, result: Result, fo
     travel = given("travel_mm") if quantity == FORCE else float("nan")
     if quantity == FORCE:
         phase = given("phase", 1.0)
-        computed, name = result.force_at(travel, int(phase) - 1), f"{FORCE} at {travel:g} mm, phase {phase:g}"
+        computed, name = run.force_at(travel, int(phase) - 1), f"{FORCE} at {travel:g} mm, phase {phase:g}"
     elif quantity in STRESSES:
         turn, angle = given("turn"), given("angle", 0.0)
-        seen = coilset.open(folder).xray(turn, angle, given("spot", 0.0))  # type: ignore[operator]
+        seen = coilset.open(run.folder).xray(turn, angle, given("spot", 0.0))  # type: ignore[operator]
         name = f"{quantity} at turn {turn:g}, {angle:g}°"
         computed = float(seen["stress"].sel(direction=STRESSES[quantity]))
     else:
-        value = result.summary.get(quantity)
+        of, _, one = quantity.rpartition(".")
+        value = (run.summary[of] or {} if of else run.summary).get(one)
         if value is None:
             raise InputError(f"'{quantity}' is unknown in this run", f"line {line}", table.path)
         computed = float(value)
-    return Compared(name, given("value"), given("error"), computed, _error(result, quantity), travel)
+    return Compared(name, given("value"), given("error"), computed, run.error(quantity), travel)
 
 
 def figure(found: Comparison, name: str) -> Figure:

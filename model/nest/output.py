@@ -10,10 +10,11 @@ from coilset.model.figures.panels.panel import GREY, Panel, axis, curve, upright
 from coilset.model.figures.png import write_png
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.nest import Pressed
-from coilset.model.results.files.folder import write_table
+from coilset.model.results.files.folder import RESULTS, clear, make, prepare, write_summary, write_table
 from coilset.model.results.records.labels import plain
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import write_run
 
 STEPS = "nest.csv"
 COLUMNS = ("step", "seat_height_mm", "force_N", "outer_force_N", "inner_force_N", "clearance_mm")
@@ -39,6 +40,31 @@ def summary(pressed: Pressed) -> dict[str, Any]:
         },
         "warnings": [vars(warning) for warning in pressed.warnings],
     }
+
+
+def write(folder: Path, pressed: Pressed, force: bool = False, pictures: bool = True) -> dict[str, Any]:
+    """Write all files into a folder, and the summary, which is returned.
+
+    Args:
+        folder: made if need be.
+        pressed: the nest after its run.
+        force: replace results that the folder holds.
+        pictures: draw characteristic.png, too.
+    """
+    prepare(folder, force)
+    for one in (folder, *(folder / name for name in NAMES)):  # of a spring that the seats no longer reach, too
+        clear(one, (*RESULTS, STEPS, "report.html"))
+    found = summary(pressed)
+    for member in pressed.members:
+        if member.result is not None:
+            make(folder / member.name)
+            own = summarise(member.setup, member.result)
+            write_run(folder / member.name, member.setup, member.result, own, origin(member.case))
+    write_steps(folder / STEPS, pressed)
+    if pictures:
+        draw(folder / "characteristic.png", pressed, found)
+    write_summary(folder, found)
+    return found
 
 
 def write_steps(path: Path, pressed: Pressed) -> None:

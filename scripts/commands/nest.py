@@ -8,13 +8,10 @@ from mpi4py import MPI
 from rich.table import Table
 
 from coilset.model.nest import output
-from coilset.model.nest.file import NAMES, read_nest
+from coilset.model.nest.file import read_nest
 from coilset.model.nest.nest import Pressed, press
-from coilset.model.results.files.folder import RESULTS, clear, make, prepare, refuse_results, write_summary
-from coilset.model.results.records.provenance import origin
+from coilset.model.results.files.folder import refuse_results
 from coilset.model.results.records.record import Step
-from coilset.model.results.records.summary import summarise
-from coilset.model.results.run_files import write_run
 from coilset.model.runtime.threads import usual
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.progress import quantity, without_minus
@@ -37,19 +34,7 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
         console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{without_minus(step.force_N, 3):>14} N")
 
     pressed = press(wanted, report, threads or usual(1))
-    prepare(folder, force)
-    for one in (folder, *(folder / name for name in NAMES)):  # of a spring that the seats no longer reach, too
-        clear(one, (*RESULTS, output.STEPS, "report.html"))
-    found = output.summary(pressed)
-    for member in pressed.members:
-        if member.result is not None:
-            make(folder / member.name)
-            own = summarise(member.setup, member.result)
-            write_run(folder / member.name, member.setup, member.result, own, origin(member.case))
-    output.write_steps(folder / output.STEPS, pressed)
-    if pictures:
-        output.draw(folder / "characteristic.png", pressed, found)
-    write_summary(folder, found)
+    found = output.write(folder, pressed, force, pictures)
     _conclude(console, pressed, found, folder)
 
 

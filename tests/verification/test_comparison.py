@@ -12,6 +12,7 @@ from coilset.verification.comparison import Compared, compare, figure
 CASE = {
     "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
     "ends": "clamped",
+    "accuracy": "none",
     "mesh": {"elements_per_turn": 8, "section": {"radial": 4, "angular": 12}},
     "loading": [{"to": {"travel": 12.0}, "steps": 6}, {"to": {"force": 0}, "steps": 2}],
 }
@@ -50,4 +51,24 @@ def test_a_folder(tmp_path):
         compare(tmp_path, tmp_path / "results", overwrite=True)
     (tmp_path / "measured.csv").write_text("quantity,value\nset_mm,9\n")
     with pytest.raises(InputError, match="column error: is missing"):
+        compare(tmp_path, tmp_path / "results", overwrite=True)
+
+
+def test_a_nest(tmp_path):
+    """Forces add up; a number of one of the springs begins with its name."""
+    for name, d, D, pitch in (("outer", 5.0, 40.0, 10.0), ("inner", 3.0, 24.0, 11.0)):
+        spring = {"wire_diameter": d, "mean_diameter": D, "turns": 1.5, "pitch": pitch}
+        mesh = {"elements_per_turn": 8, "section": {"radial": 2, "angular": 8}}
+        case = {"spring": spring, "material": "elastic", "mesh": mesh, "accuracy": "none", "loading": [{"to": "block"}]}
+        (tmp_path / f"{name}.yaml").write_text(yaml.safe_dump(case))
+    nest = {name: {"case": f"{name}.yaml"} for name in ("outer", "inner")}
+    (tmp_path / "nest.yaml").write_text(yaml.safe_dump(nest | {"loading": [{"to": {"height": 18.0}, "steps": 2}]}))
+    rows = "force_N;100;10;2;1;\nouter.force_max_N;100;10;;;\nforce_max_N;100;10;;;\n"
+    (tmp_path / "measured.csv").write_text(HEAD + rows)
+    found = compare(tmp_path, tmp_path / "results")
+    force, outer, both = (row.computed for row in found.rows)
+    assert force == pytest.approx(both, rel=1e-9)
+    assert 0.3 * force < outer < 0.95 * force
+    (tmp_path / "measured.csv").write_text(HEAD + "stress_along_MPa;9;0,1;;;1\n")
+    with pytest.raises(InputError, match=r"line 2: 'stress_along_MPa' is none that a run has"):
         compare(tmp_path, tmp_path / "results", overwrite=True)
