@@ -5,10 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from coilset.meshes.springs.manufacture import Relief
 from coilset.model.base.errors import SolveError
 from coilset.model.material import library
 from coilset.model.section.rules import polar, upper_half
 from coilset.model.uniform_coil import rod as uniform
+from coilset.model.uniform_coil.past import DISK, coiled
 from coilset.model.uniform_coil.section import Coil, force_shear, integrate, residual_and_tangent, strains
 
 COIL = np.array([5.0, 40.0, 12.0, 2.5])
@@ -30,6 +32,23 @@ def forces(case, q, old_E, points):
     assert integrate(case, E, old_E, points, new, np.empty((3, 3)), S, T)
     residual_and_tangent(case, q, S, T, f, K)
     return f, K, E, new
+
+
+@pytest.mark.parametrize("relief", [None, Relief(temperature=523.15, minutes=30)])
+def test_coiled_wire_rests_in_the_uniform_coil(relief):
+    """Its stress carries no force or moment there, signs of shear included; it is as large as the yield stress."""
+    law = library.load("creeping" if relief else "ck15")
+    case, points = coil(law), coiled(COIL, law, relief).points[0]
+    half = upper_half(DISK)
+    y, z = 2.5 * np.ascontiguousarray(half.points.T)
+    case = case._replace(y=y, z=z, area=np.pi * 6.25 * half.weights)
+    across, along = force_shear(2.5, y, z, case.bend)
+    case, S = case._replace(across=across, along=along), np.empty(4)
+    integrate(case, np.zeros(4), np.zeros(4), points, np.empty_like(points), np.empty((3, 3)), S, np.empty((4, 4)))
+    force = np.pi * 6.25 * law.yield_stress
+    assert np.abs(S / [force, force, 2.5 * force, 2.5 * force]).max() < 1e-6
+    assert 0.6 < np.abs(points[:, 0]).max() / law.yield_stress < 3.0
+    assert np.abs(points[:, 1:3]).max() > 0.03 * law.yield_stress
 
 
 def test_tangent_in_a_plastic_state():

@@ -158,7 +158,8 @@ def _nest(folder: Path, results: Path, overwrite: bool) -> _Run:
 
     def force_at(at: float, phase: int) -> float:
         if not 0 <= phase < len(parts) or not parts[phase][0].min() <= at <= parts[phase][0].max():
-            raise InputError(f"the nest does not reach a travel of {at:g} mm in phase {phase + 1}", "", folder / MEASURED)
+            problem = f"the nest does not reach a travel of {at:g} mm in phase {phase + 1}"
+            raise InputError(problem, "", folder / MEASURED)
         way = np.argsort(parts[phase][0])
         return float(PchipInterpolator(*(part[way] for part in parts[phase]))(at))
 

@@ -84,7 +84,7 @@ def coil(
     slope = np.eye(2)
     for _ in range(ATTEMPTS):
         virgin = Wire.of_disk(law, rule, radius, curved, row, surface)
-        wire, tight, moments = _coiled(virgin, turned, wanted[0], relief)
+        wire, tight, moments = bent(virgin, turned, wanted[0], relief)
         off = wire.curvature - wanted
         if np.abs(off).max() <= CLOSE * curvature:
             inside = len(rule.weights)
@@ -148,20 +148,32 @@ def twist(
     return wire.states
 
 
-def _coiled(
-    wire: Wire, turned: np.ndarray, end: float, relief: Sequence[SectionLaw]
+def bent(
+    wire: Wire, turned: np.ndarray, end: float, relief: Sequence[SectionLaw], increments: int = LOADING
 ) -> tuple[Wire, tuple[float, float], tuple[float, float]]:
-    """The wire after it was turned by θ and φ a length, released and relieved; curvature and torsion, M3, Mt before."""
+    """The wire after it was turned by θ and φ a length, released and relieved; curvature and torsion, M3, Mt before.
+
+    Args:
+        wire: straight, which is changed.
+        turned: θ and φ, 1/mm.
+        end: curvature of the spring, 1/mm.
+        relief: as in `coil`.
+        increments: of the bend.
+
+    Raises:
+        SolveError: if a section finds no equilibrium.
+    """
     d = np.zeros(6)
-    for _ in range(LOADING):
-        d[[BEND, TWIST]] = turned / LOADING / wire.stretch
-        wire.step(d, FREE, np.zeros(6), wire.curvature[0] + 0.5 * d[BEND])
+    for _ in range(increments):
+        d[[BEND, TWIST]] = turned / increments / wire.stretch
+        d = wire.step(d, FREE, np.zeros(6), wire.curvature[0] + 0.5 * d[BEND])
     tight, moments = (float(wire.curvature[0]), float(wire.curvature[1])), (float(wire.s[BEND]), float(wire.s[TWIST]))
-    loaded = wire.s.copy()
+    loaded, d = wire.s.copy(), np.zeros(6)
     for k in range(1, RELEASE + 1):
         bend = end if k == RELEASE else wire.curvature[0]  # it ends in balance as a section of the spring
-        wire.step(np.zeros(6), np.arange(6), loaded * (1.0 - k / RELEASE), bend)
+        d = wire.step(d, np.arange(6), loaded * (1.0 - k / RELEASE), bend)
+    d = np.zeros(6)
     for interval in relief:
         wire.law = interval
-        wire.step(np.zeros(6), np.arange(6), np.zeros(6), end)
+        d = wire.step(d, np.arange(6), np.zeros(6), end)
     return wire, tight, moments

@@ -1,7 +1,9 @@
 """The past of a rod's wire: coiled, relieved or peened, it is not free of stress before its first load."""
 
+import pickle
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -12,10 +14,11 @@ from coilset.meshes.springs.placement import STRAIGHT
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.base.warning import Warning
-from coilset.model.manufacture.coiling import coil, grind, twist, winding_torque
+from coilset.model.manufacture.coiling import Coiled, coil, grind, twist, winding_torque
 from coilset.model.manufacture.peening import Layer, peen, peening_warnings
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.law.functions import HEATING, elasticity
+from coilset.model.material.law.law import Law
 from coilset.model.material.law.parts import Parts
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
@@ -111,7 +114,7 @@ def _past(rod: Rod, spring: SpringSpec) -> _Past:
     return _Past(
         law._replace(plastic=plastic) if isinstance(law, Parts) and not rod.law.returns_cold else plastic,
         bool(spring.made_by),
-        _relief(rod, spring.relieved),
+        relief_intervals(rod.law, rod.parameters, rod.temperature, spring.relieved),
         None if spring.peening is None else _layer(rod, spring.peening),
         spring.initial_tension or 0.0,
     )
@@ -141,24 +144,37 @@ def _layer(rod: Rod, peening: Peening) -> Layer:
     return Layer(np.array(peening.depth), -np.array(peening.stress) / E)
 
 
-def _relief(rod: Rod, relief: Relief | None) -> tuple[Parts, ...]:
-    """The law over the intervals of a stress relief; heating and cooling take no time."""
+def relief_intervals(
+    law: Law, parameters: np.ndarray, temperature: float, relief: Relief | None, count: int = INTERVALS
+) -> tuple[Parts, ...]:
+    """The law over the intervals of a stress relief, one after the other; heating and cooling take no time.
+
+    Args:
+        law: of the wire.
+        parameters: its, at the temperature of the spring.
+        temperature: of the spring, K.
+        relief: entries of a case; None: nothing.
+        count: of the intervals.
+
+    Raises:
+        InputError: if the material does not creep, or is not known at the temperature of the relief.
+    """
     if relief is None:
         return ()
-    if rod.law.creep is None:
+    if law.creep is None:
         raise InputError(
-            f"'{rod.law.name}' does not creep, so that time relieves nothing; give a material with creep",
+            f"'{law.name}' does not creep, so that time relieves nothing; give a material with creep",
             "spring.relieved",
         )
     try:
-        warm = rod.law.known(relief.temperature)
+        warm = law.known(relief.temperature)
     except InputError as error:
         raise InputError(error.problem, "spring.relieved.temperature") from None
-    hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, INTERVALS + 1) * np.log1p(1.0 / FIRST))
-    creep = CreepLaw(rod.law.creep, rod.law.parts(_cold(rod.parameters)), rate=rod.law.data.rate)
-    clocks = [creep.clock(0.0, rod.temperature)]
-    for time, temperature in (*((float(time), warm) for time in hours), (float(hours[-1]), rod.temperature)):
-        clocks.append(creep.clock(time, temperature, clocks[-1]))
+    hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, count + 1) * np.log1p(1.0 / FIRST))
+    creep = CreepLaw(law.creep, law.parts(_cold(parameters)), rate=law.data.rate)
+    clocks = [creep.clock(0.0, temperature)]
+    for time, at in (*((float(time), warm) for time in hours), (float(hours[-1]), temperature)):
+        clocks.append(creep.clock(time, at, clocks[-1]))
     return tuple(creep.over(before, after) for before, after in pairwise(clocks))
 
 
@@ -167,6 +183,12 @@ def _cold(parameters: np.ndarray) -> np.ndarray:
     found = parameters.copy()
     found[HEATING] = 0.0
     return found
+
+
+@lru_cache(maxsize=256)
+def _coiled(arguments: bytes) -> Coiled:
+    """`coil` of pickled arguments; kept, as a spring that is pressed again has the same sections."""
+    return coil(*pickle.loads(arguments))
 
 
 def _through(
@@ -192,7 +214,8 @@ def _through(
         if past.coiled and curvature >= STRAIGHT:
             if guess is not None:  # as the last one, turned by as much more as this one is
                 guess = guess[0] + curvature - wires[first][k - 1, 1], guess[1] + torsion - wires[first][k - 1, 2]
-            coiled = coil(past.law, rule, radius, curvature, torsion, states, sections.curved, guess, past.relief, rim)
+            bend = past.law, rule, radius, curvature, torsion, states, sections.curved, guess, past.relief, rim
+            coiled = _coiled(pickle.dumps(bend))
             guess, states = coiled.turned, np.concatenate([coiled.points, coiled.surface])
             tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
         if past.layer is not None:

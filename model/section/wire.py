@@ -88,8 +88,11 @@ class Wire:
             raise SolveError("the law found no solution")
         return s, self._tangent, new
 
-    def step(self, d: np.ndarray, free: np.ndarray, wanted: np.ndarray, bend: float) -> None:
+    def step(self, d: np.ndarray, free: np.ndarray, wanted: np.ndarray, bend: float) -> np.ndarray:
         """Change the section strains by `d`; the `free` ones are sought that make their resultants `wanted`.
+
+        Returns:
+            The change, with the free ones as found: where the next of equal steps may begin.
 
         Raises:
             SolveError: if there are none.
@@ -106,6 +109,7 @@ class Wire:
         self.turned += self.stretch * d[[BEND, TWIST]]
         self.stretch *= math.exp(d[0]) if self.curved else 1.0
         self.states, self.s = new, s
+        return d
 
     def grow(self, strain: np.ndarray) -> None:
         """Let the points' own length grow by axial strains, shape (points,), while the section's strains stay.

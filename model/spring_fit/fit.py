@@ -16,11 +16,13 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 
 from coilset.model.base.errors import InputError, SolveError
+from coilset.model.case.case import Case
+from coilset.model.manufacture.initial_state import relief_intervals
 from coilset.model.spring_fit.intervals import Interval, correlation, intervals, minimum
 from coilset.model.spring_fit.laws import CONSTANTS, Form
 from coilset.model.spring_fit.model import TESTER, Errors, Model, names
 from coilset.model.spring_fit.pressing import Pressing
-from coilset.model.standards.wires.law import case_law, hottest
+from coilset.model.standards.wires.law import case_law, softening
 from coilset.model.uniform_coil.equivalent import coil
 
 ROUNDS = 10
@@ -90,9 +92,10 @@ class SpringFit:
         """Content of a material file."""
         model = self.model
         files = ", ".join(one.name for one in model.pressings)
-        temperature, case = model.form.temperature, model.pressings[0].case
-        hot = None if isinstance(case.material, str) else hottest(case.material.wire, temperature)
-        more = [f"G at {hot[0]:g} K by the slope of {case.material.wire}"] if hot else []  # type: ignore[union-attr]
+        case, temperature = model.pressings[0].case, model.form.temperature
+        of = case.material if isinstance(case.material, str) else case.material.wire
+        more = [f"G at {hot:g} K by the slope of {of}" for hot, _ in model.form.warmer]
+        more += [f"creep as of {of}"] * (model.form.creep is not None)
         about = {
             "name": name,
             "description": f"Constants identified from presses of springs ({model.form.name})",
@@ -103,12 +106,7 @@ class SpringFit:
                 "temperature": temperature,
             },
         }
-        found = model.form.material(self.values, about)
-        if hot:
-            at = found["temperatures"][0]
-            elastic = at["elasticity"] | {"G": hot[1] * at["elasticity"]["G"]}
-            found["temperatures"].append(at | {"temperature": hot[0], "elasticity": elastic})
-        return found
+        return model.form.material(self.values, about)
 
     @property
     def misfit(self) -> str:
@@ -143,14 +141,14 @@ def fit_springs(
             are used again.
 
     Raises:
-        InputError: a name that is none, or fewer readings than unknowns.
+        InputError: a name that is none, fewer readings than unknowns, or a stress relief of wire that does not creep.
         SolveError: if no constants are found with which the springs can be pressed so.
     """
     known = dict(known or {})
     _check(known, tester)
-    law = case_law(pressings[0].case, pressings[0].spring)
-    temperature = pressings[0].case.temperature or law.reference_temperature
-    shape = Form(form, law.nu, temperature)
+    shape, law = form_of(pressings[0].case, form), case_law(pressings[0].case, pressings[0].spring)
+    for one in pressings:
+        relief_intervals(law, law.parameters(shape.temperature), shape.temperature, one.relief)
     model = Model(tuple(pressings), shape, known, names(shape, known, tester), errors).uncorrected()
     if model.readings < len(model.fitted):
         problem = f"{model.readings} readings cannot determine {len(model.fitted)} constants"
@@ -166,15 +164,24 @@ def fit_springs(
     return _result(model, *_central(model, x, found, within), within, before + rounds)
 
 
+def form_of(case: Case, name: str) -> Form:
+    """The law of few constants of this name, with what a case's material says of other temperatures and of creep."""
+    law = case_law(case, case.spring.build())
+    temperature = case.temperature or law.reference_temperature
+    creep = None if law.creep is None else law.creep.model_dump(mode="json", exclude_none=True)
+    return Form(name, law.nu, temperature, tuple(softening(case, law, temperature)), creep)
+
+
 def _central(
     model: Model, x: np.ndarray, found: OptimizeResult, within: Mapping[str, Interval]
 ) -> tuple[np.ndarray, OptimizeResult]:
     """The unknowns of least squares, but a share that is not determined in the middle of its interval."""
-    if model.share is None or not within["share"].undetermined:
+    at = model.threshold
+    if at is None or not within["share"].undetermined:
         return x, found
     middle = x.copy()
-    middle[model.share] = 0.5 * (within["share"].low + within["share"].high)
-    return minimum(model, middle, [model.share])
+    middle[at] = 0.5 * (within["share"].low + within["share"].high)
+    return minimum(model, middle, [at])
 
 
 def _result(
@@ -212,9 +219,9 @@ def _begun(model: Model, G: float) -> tuple[Model, np.ndarray, int]:
     Raises:
         SolveError: if a whole rod finds no equilibrium.
     """
-    held = [] if model.share is None else [model.share]
+    held = [] if model.threshold is None else [model.threshold]
     x = _first(model, G, held)
-    for slopes in (False, True):
+    for slopes in (False,) * (1 + any(one.coiled for one in model.pressings)) + (True,):
         model = model.corrected(x, slopes)
         x, _ = minimum(model, x, held, fine=False)
     if held:
@@ -231,11 +238,11 @@ def _settled(model: Model, x: np.ndarray) -> tuple[Model, np.ndarray, OptimizeRe
     """
     nearest = math.inf
     for number in range(1, ROUNDS + 1):
-        model = model.shifted(x)
+        model = model.shifted(x, number > 1)
         before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x)
         small = SETTLED * max(_scatter(model, found), 1.0) ** 2
         # whole rods come no nearer: below a threshold no share changes them
-        if before - 2.0 * found.cost < small or (model.share is not None and nearest - before < small):
+        if before - 2.0 * found.cost < small or (model.threshold is not None and nearest - before < small):
             return model, x, found, number
         nearest = min(nearest, before)
     raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")

@@ -112,7 +112,7 @@ def _end(
     others = np.arange(len(x)) != k
     along = np.zeros(len(x))
     along[k] = 1.0
-    kinked = k == model.share  # its slope on one side says nothing of the other
+    kinked = k == model.threshold  # its slope on one side says nothing of the other
     if not kinked:
         along[others] = -np.linalg.lstsq(J[:, others], J[:, k], rcond=1e-9)[0]
     sign, low, high = math.copysign(1.0, width), *model.bounds

@@ -13,7 +13,7 @@ the rise R of the flow stress in all, its rate m, and the share β of the rise t
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -35,11 +35,15 @@ class Form:
         name: voce or thesis.
         nu: Poisson's ratio.
         temperature: K.
+        warmer: higher temperatures, K, and G there over that at `temperature`; all else stays.
+        creep: its entries in a material file, if the wire creeps.
     """
 
     name: str
     nu: float
     temperature: float
+    warmer: tuple[tuple[float, float], ...] = ()
+    creep: Mapping[str, Any] | None = field(default=None, hash=False)
 
     def __post_init__(self) -> None:
         if self.name not in FORMS:
@@ -77,11 +81,16 @@ class Form:
             "kinematic": {"a5": share * rise / 3.0, "a6": 0.0, "a7": fades} if share * rise > 0.0 else "none",
             "non_normality": "none",
         }
-        return {**about, "units": "N, mm, K", "temperatures": [at]}
+        rows = [at]
+        for warmer, softer in self.warmer:
+            rows.append(at | {"temperature": warmer, "elasticity": {"G": softer * G, "nu": self.nu}})
+        creep = {} if self.creep is None else {"creep": dict(self.creep)}
+        return {**about, "units": "N, mm, K", "temperatures": rows, **creep}
 
     def law(self, values: Mapping[str, float]) -> Law:
-        """The Law of these constants."""
-        return Law(MaterialFile.model_validate(self.material(values, TRIAL)))
+        """The Law of these constants, at other temperatures only if it creeps there."""
+        form = self if self.creep else replace(self, warmer=())
+        return Law(MaterialFile.model_validate(form.material(values, TRIAL)))
 
 
 TRIAL = {

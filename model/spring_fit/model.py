@@ -156,6 +156,11 @@ class Model:
         """Number of the share among the unknowns, if it is one."""
         return self.fitted.index("share") if "share" in self.fitted else None
 
+    @property
+    def threshold(self) -> int | None:
+        """Number of a fitted share that changes nothing up to a threshold: of wire that has not flowed before."""
+        return None if any(one.coiled for one in self.pressings) else self.share
+
     def lacking(self, x: np.ndarray, number: int) -> np.ndarray:
         """What the whole rod has more at the readings of a pressing, linear between the shares at which it is known."""
         known = [one.more[number] + self.slopes_missing[number] @ (x - one.at) for one in self.missing]
@@ -203,8 +208,8 @@ class Model:
         rods_here, _ = self._whole(x, rods.COARSE)
         more = self._difference(x, rods_here)
         known = [one.copy() for one in self.slopes_missing]
-        for k, name in enumerate(self.fitted if slopes else ()):
-            if name == "share":
+        for k in range(len(self.fitted) if slopes else 0):
+            if k == self.threshold:
                 continue  # it acts beyond a threshold: `with_shares` follows it
             step = self._step(x, k)
             moved = x.copy()
@@ -250,26 +255,32 @@ class Model:
             for one, other, weight in zip(ours, others, self.weights, strict=True)
         )
 
-    def shifted(self, x: np.ndarray) -> "Model":
+    def shifted(self, x: np.ndarray, again: bool) -> "Model":
         """The model that is the whole rod's, on the mesh of the case, at these unknowns.
 
-        What shares have more than others and the slopes stay.
+        What shares have more than others stays; so do the slopes if it does, or if this mesh is new. Else they are
+        those with which this rod would have been predicted from the last one (Broyden's update).
 
         Args:
             x: unknowns.
+            again: whether the last rod was of this mesh, too.
 
         Raises:
             SolveError: if the whole rod finds no equilibrium.
         """
         branches, work = self._whole(x, rods.USUAL)
-        now, missing = self._difference(x, branches), []
+        now, missing, slopes = self._difference(x, branches), [], self.slopes_missing
+        way = np.where(np.arange(len(x)) < len(self.fitted), x - self.missing[0].at, 0.0)
+        if again and len(self.missing) == 1 and way.any():
+            off = (here - self.lacking(x, k) for k, here in enumerate(now))
+            slopes = tuple(one + np.outer(more, way / (way @ way)) for one, more in zip(slopes, off, strict=True))
         for one in self.missing:
             at = x.copy()
             if self.share is not None:
                 at[self.share] = one.at[self.share]
             more = tuple(self.lacking(at, k) + here - self.lacking(x, k) for k, here in enumerate(now))
             missing.append(Missing(at, more))
-        return replace(self, missing=tuple(missing), work=work)
+        return replace(self, missing=tuple(missing), slopes_missing=slopes, work=work)
 
     def _whole(self, x: np.ndarray, fine: rods.Steps) -> tuple[list[list[Branch]], float]:
         material = self.form.material(self.values(x), TRIAL)

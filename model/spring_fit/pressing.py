@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.manufacture import Relief
 from coilset.model.base.columns import Columns, read_columns
 from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case
@@ -44,6 +45,16 @@ class Pressing:
     def spring(self) -> Spring:
         """Its geometry."""
         return self.case.spring.build()
+
+    @property
+    def coiled(self) -> bool:
+        """Whether its wire was bent to the coil, and flowed, before it is pressed."""
+        return "made_by" in self.case.past
+
+    @property
+    def relief(self) -> Relief | None:
+        """How it was stress-relieved after that, if it was."""
+        return getattr(self.case.spring, "relieved", None)
 
     @property
     def presses(self) -> list[int]:

@@ -3,7 +3,7 @@
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -13,6 +13,7 @@ import yaml
 from mpi4py import MPI
 from scipy.interpolate import PchipInterpolator
 
+from coilset.meshes.springs.manufacture import Relief
 from coilset.model.base.entry import check_entries
 from coilset.model.case.case import Case
 from coilset.model.material.law.law import Law
@@ -20,6 +21,7 @@ from coilset.model.results.records.record import Step
 from coilset.model.run.analysis import Analysis
 from coilset.model.spring_fit.pressing import Pressing
 from coilset.model.uniform_coil.equivalent import coil
+from coilset.model.uniform_coil.past import coiled
 from coilset.model.uniform_coil.rod import UniformState, press
 
 PRESS, RELEASE = 24, 8  # steps of a branch of the uniform rod
@@ -35,7 +37,7 @@ class Steps(NamedTuple):
     mesh: Mapping[str, Any] | None = None
 
 
-USUAL = Steps(24, 6, 6)
+USUAL = Steps(24, 12, 12)
 COARSE = Steps(12, 3, 3, {"elements_per_turn": 8, "section": {"radial": 4, "angular": 12}})  # to begin with
 
 
@@ -90,6 +92,8 @@ def uniform(pressing: Pressing, law: Law, ends: Sequence[float | None]) -> list[
         SolveError: if there is no equilibrium.
     """
     state: np.ndarray | UniformState = coil(pressing.spring)
+    if pressing.coiled:
+        state = _coiled(law, tuple(coil(pressing.spring).tolist()), pressing.relief, pressing.case.temperature)
     free, temperature = pressing.case.ends_turn, pressing.case.temperature
     travel, force, found = 0.0, 0.0, []
     for number, end in enumerate(ends):
@@ -105,6 +109,11 @@ def uniform(pressing: Pressing, law: Law, ends: Sequence[float | None]) -> list[
         travel, force = float(travels[-1]), float(forces[-1])
         found.append(_branch(travels, forces))
     return found
+
+
+@lru_cache(maxsize=4)
+def _coiled(law: Law, one: tuple[float, ...], relief: Relief | None, temperature: float | None) -> UniformState:
+    return coiled(np.array(one), law, relief, temperature)
 
 
 def steps(

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from coilset.model.base.errors import SolveError
-from coilset.model.manufacture.coiling import _coiled, coil
+from coilset.model.manufacture.coiling import bent, coil
 from coilset.model.material import library
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.point.points import initial_state
@@ -95,4 +95,4 @@ def test_relief_against_fibres_that_creep():
 def coiled_with(law, rule, row, turned):
     """Stress of a bar that was turned so and let go, before its relief."""
     wire = Wire.of_disk(law.parameters(), rule, RADIUS, False, row)
-    return _coiled(wire, np.array(turned), 0.05, ())[0].states[: len(rule), 0]
+    return bent(wire, np.array(turned), 0.05, ())[0].states[: len(rule), 0]

@@ -1,5 +1,7 @@
 """Constants from presses of springs: readings, laws of few constants, the search, its intervals, and the command."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import yaml
@@ -158,10 +160,16 @@ def test_wrong_names_and_values(known, tester, message):
     assert str(error.value).startswith(message)
 
 
+def test_a_stress_relief_needs_wire_that_creeps():
+    case = study.spring().model_dump(mode="json")
+    case["spring"] |= {"made_by": "coiling", "relieved": {"temperature": 523.15, "minutes": 30}}
+    press = replace(study.pressed(study.spring(), [1.0], uniform=True), case=check(case))
+    with pytest.raises(InputError, match=r"spring\.relieved: 'elastic' does not creep"):
+        fit_springs([press])
+
+
 def test_tester_friction_and_compliance_are_fitted(by_uniform_rods):
     """μ 1 % and 1e-3 mm/N added to the readings come back; a loop of friction is no set."""
-    from dataclasses import replace
-
     rng = np.random.default_rng(3)
     one = study.pressed(study.spring(), [20.0], uniform=True)
     force = one.force * np.where(one.branch % 2, 0.99, 1.01)

@@ -92,16 +92,23 @@ def _softened(wire: Wire, temperature: float) -> float:
     return 1.0 - slope.value * (temperature - ROOM_TEMPERATURE)
 
 
-def hottest(name: str, temperature: float) -> tuple[float, float] | None:
-    """The highest temperature, K, at which G of a wire is known, and G there over that at `temperature`; else None.
+def softening(case: Case, law: Law, temperature: float) -> list[tuple[float, float]]:
+    """Temperatures above one, K, at which G of a case's material is known, and G there over that at it.
 
-    Raises:
-        InputError: an unknown wire.
+    Of a material file those of its table, of a named wire the highest of its slope.
+
+    Args:
+        case, law: the law is that of `case_law`.
+        temperature: K.
     """
-    known, hot = wire(name), SLOPE_RANGE[1]
+    if isinstance(case.material, str):
+        table = [float(one) for one in law.temperatures if one > temperature]
+        G = law.moduli([law.known(temperature), *table])[1]
+        return list(zip(table, (G[1:] / G[0]).tolist(), strict=True))
+    known, hot = wire(case.material.wire), SLOPE_RANGE[1]
     if known.entry.shear_modulus_decrease is None or not SLOPE_RANGE[0] <= temperature < hot:
-        return None
-    return hot, _softened(known, hot) / _softened(known, temperature)
+        return []
+    return [(hot, _softened(known, hot) / _softened(known, temperature))]
 
 
 def case_law(case: Case, spring: Spring) -> Law:

@@ -12,7 +12,7 @@ readings fitted by a law without hardening show what a wrong law looks like.
 """
 
 import contextlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import matplotlib as mpl
@@ -34,6 +34,7 @@ FORCE, TRAVEL = 0.005, 0.02  # noise, of each force and in mm
 PARTS, THIRD = (0.55, 0.8), 0.95  # of the travel to block
 FINE = rods.Steps(60, 15, 20, {"elements_per_turn": 20})  # of the presses
 TRUE = {"G": 80000.0, "yield_stress": 500.0, "rise": 800.0, "rate": 300.0, "share": 0.5}
+FORM = Form("voce", 0.3, 293.15)
 
 
 def spring() -> Case:
@@ -49,19 +50,25 @@ def spring() -> Case:
     )
 
 
-def pressed(case: Case, tops: Sequence[float], uniform: bool = False) -> Pressing:
+def pressed(
+    case: Case,
+    tops: Sequence[float],
+    uniform: bool = False,
+    form: Form = FORM,
+    true: Mapping[str, float] = TRUE,
+) -> Pressing:
     """Readings without noise of a spring that is pressed to travels one after the other and released.
 
     Args:
         case: of the spring.
         tops: travels, mm.
         uniform: by the uniform rod instead of the whole one.
+        form, true: of its law, and the constants.
     """
-    form = Form("voce", 0.3, 293.15)
     ends = tuple(end for top in tops for end in (float(top), None))
     none = Pressing("press", case, np.zeros(1), np.zeros(1), np.zeros(1, int), ends)
-    made = _read(none, rods.uniform(none, form.law(TRUE), ends))
-    return made if uniform else _read(made, rods.whole(made, form.material(TRUE, TRIAL), ends, FINE)[0])
+    made = _read(none, rods.uniform(none, form.law(true), ends))
+    return made if uniform else _read(made, rods.whole(made, form.material(true, TRIAL), ends, FINE)[0])
 
 
 def _read(one: Pressing, curves: Sequence[rods.Branch]) -> Pressing:
@@ -79,9 +86,9 @@ def noisy(one: Pressing, rng: np.random.Generator) -> Pressing:
     return replace(one, travel=travel, force=force, ends=ends)
 
 
-def inside(fit: SpringFit) -> dict[str, bool]:
+def inside(fit: SpringFit, true: Mapping[str, float] = TRUE) -> dict[str, bool]:
     """Whether each constant's interval holds the true one."""
-    return {name: one.low <= TRUE[name] <= one.high for name, one in fit.intervals.items()}
+    return {name: one.low <= true[name] <= one.high for name, one in fit.intervals.items()}
 
 
 def run(study: Study) -> None:
@@ -114,7 +121,7 @@ def run(study: Study) -> None:
         kind="at_most",
     )
     third = [THIRD * furthest, None]
-    true = rods.whole(clean[0], Form("voce", 0.3, 293.15).material(TRUE, TRIAL), third, FINE)[0][1].free
+    true = rods.whole(clean[0], FORM.material(TRUE, TRIAL), third, FINE)[0][1].free
     for seed in FRESH:
         rng = np.random.default_rng(seed)
         fit = fit_springs([noisy(one, rng) for one in clean], like=fits[0])
