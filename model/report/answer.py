@@ -7,6 +7,7 @@ from typing import Any
 from coilset.model.figures.panels.panel import with_unit
 from coilset.model.results.files.opened import Run, is_turned
 from coilset.model.results.records.labels import largest_errors, within
+from coilset.model.results.records.units import quantity
 
 
 @dataclass(frozen=True)
@@ -162,6 +163,50 @@ WORKING_HEADS = (
     "force centre, x and y, mm",
 )
 """Columns of `working_rows`."""
+WORKING_NOTE = (
+    "τ = 8 D F/(π d³) and τk after EN 13906-1; the true shear stress at the inside of the coil includes the residual "
+    "stress. Safety is the stress allowed for the wire at block over τ or τk, whichever it limits."
+)
+LIMIT_HEADS = ("result", "value", "from", "to", "", "by", "source")
+FATIGUE_HEADS = ("criterion", "amplitude, MPa", "endured, MPa", "safety", "at turn", "angle", "lives, 10, 50, 90 %")
+FATIGUE_NOTE = (
+    "Amplitude of a fully reversed test that damages as much as the working cycle, residual stress included, where it "
+    "is greatest on the wire's surface; the angle is counted from the inside of the coil. Lives are the cycles that so "
+    "many of the springs do not survive; – where they endure, or without a slope."
+)
+
+
+def lists(summary: Mapping[str, Any]) -> list[tuple[str, str, str, tuple[str, ...], list[list[str]]]]:
+    """Tables of a run's page: name, title, note, columns and rows; of summary.json."""
+    return [
+        ("limits", "Limits", "", LIMIT_HEADS, list(map(_limit, summary.get("limits") or ()))),
+        ("working", "Working lengths of the finished spring", WORKING_NOTE, WORKING_HEADS, working_rows(summary)),
+        ("life", "Safety and life", FATIGUE_NOTE, FATIGUE_HEADS, list(map(_fatigue, summary.get("fatigue") or ()))),
+    ]
+
+
+def _limit(limit: Mapping[str, Any]) -> list[str]:
+    words, unit = quantity(limit["name"])
+    words, value = f"{words}, {unit}" if unit else words, limit["value"]
+    ends = [f"{limit[name]:.6g}" for name in ("low", "high")]
+    if value is None:
+        return [words, "none", *ends, "not met", "–", limit["source"]]
+    met = "met" if limit["met"] else "not met"
+    cells = [words, f"{value:.6g}", *ends, met, f"{abs(limit['margin']):.3g}", limit["source"]]
+    return [cell.replace("-", "−") if k in (1, 2, 3) else cell for k, cell in enumerate(cells)]
+
+
+def _fatigue(entry: Mapping[str, Any]) -> list[str]:
+    lives = entry["lives"]
+    return [
+        entry["criterion"],
+        with_unit(entry["amplitude_MPa"], ""),
+        with_unit(entry["endured_MPa"], ""),
+        with_unit(entry["safety"], "", 2),
+        with_unit(entry["turn"], "", 2),
+        f"{entry['angle_deg']:z.0f}°".replace("-", "−"),
+        "–" if lives is None else ", ".join(f"{life:.2g}" for life in lives.values()),
+    ]
 
 
 def working_rows(summary: Mapping[str, Any]) -> list[list[str]]:

@@ -25,7 +25,7 @@ from coilset.model.figures.panels.panel import Panel
 from coilset.model.figures.panels.seats import active_turns, contact, contact_length, eccentricity, force_centre
 from coilset.model.figures.panels.section_map import normal_map, shear_map
 from coilset.model.figures.panels.spring_view import spring_view
-from coilset.model.report.answer import WORKING_HEADS, answer, subtitle, working_rows
+from coilset.model.report.answer import answer, lists, subtitle
 from coilset.model.report.first_sheet import first_sheet
 from coilset.model.report.maker_sheet import maker_sheet
 from coilset.model.report.render import write_page
@@ -69,10 +69,9 @@ def write_report(run: Run) -> Path:
         answer=found,
         sheet=maker_sheet(run),
         first=first_sheet(run),
-        working=working_rows(run.summary),
+        lists=lists(run.summary),
         case=_text(case),
         files=files,
-        heads=WORKING_HEADS,
         made_with=made_with(run.summary["origin"]),
     )
 

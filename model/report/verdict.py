@@ -48,13 +48,15 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
     unknown = "errors of torque and rotation are not estimated" if turned else ""
     wire = "" if is_standard_wire else f"no permissible stress of {summary['material']} is known"
     complete = Check(LOAD, bool(summary["complete"]), "" if summary["complete"] else "the run ended before it did")
-    groups = (
+    groups: list[tuple[str, tuple[str, ...], str]] = [
         (FORMULAS, ("gap", "solid coils"), cylinder),
         (WIRE, ("stress", "strength", "endurance"), cylinder or wire),
         ("buckling", ("buckled", "buckling", "snapped"), ""),
         ("material data", ("plastic work",), ""),
         ("accuracy", ("step error", "unknown error", "penetration", "wall"), unknown),
-    )
+    ]
+    if summary.get("limits"):
+        groups.insert(0, ("limits", ("limit",), ""))
     found = [complete, *(_check(name, warnings, messages, not_made) for name, warnings, not_made in groups)]
     named = {name for _, warnings, _ in groups for name in warnings}
     others = [one for name, one in messages.items() if name not in named | REMARKS]

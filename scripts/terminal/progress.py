@@ -247,7 +247,7 @@ def limit_line(limit: Mapping[str, Any]) -> str:
 def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:
     """Fatigue by each criterion, of summary.json, a row each; stresses in MPa."""
     table = Table(show_header=True, box=None, padding=(0, 1))
-    for head in ("fatigue by", "amplitude", "endured", "safety", "turn", "angle", "lives"):
+    for head in ("fatigue by", "amplitude", "endured", "safety", "turn", "angle", "lives, 10, 50, 90 %"):
         table.add_column(head, justify="right", no_wrap=True)
     for one in entries:
         numbers = (f"{one[name]:.0f}" for name in ("amplitude_MPa", "endured_MPa"))

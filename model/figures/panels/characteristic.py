@@ -10,6 +10,7 @@ from coilset.model.figures.panels.panel import COLOURS, GREY, Panel, axis, curve
 from coilset.model.figures.panels.phases import Phase, phases, unnamed
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
+from coilset.model.results.records.working import number_name
 
 HEIGHT = 440  # pixels, the same for both, which stand side by side
 NAMED = len(COLOURS)  # targets
@@ -94,7 +95,13 @@ def _working(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
     travel = [summary["free_length_before_mm"] - state["length_mm"] for state in states]
     marker = {"size": 9, "symbol": "square", "color": GREY}
     trace = {"type": "scatter", "mode": "markers", "x": travel, "y": [state["force_N"] for state in states]}
-    return [trace | {"marker": marker, "name": "working lengths"}]
+    found = [trace | {"marker": marker, "name": "working lengths"}]
+    limits = {limit["name"]: limit for limit in summary.get("limits") or ()}
+    for state, at in zip(states, travel, strict=True):
+        if limit := limits.get(number_name("force", state.get("length_wanted") or 0.0)):
+            ends = [limit["low"], limit["high"]]
+            found.append(curve([at] * 2, ends, GREY, 7, name="limits", showlegend=len(found) == 1))
+    return found
 
 
 def _curves(
@@ -166,7 +173,7 @@ def _arrow(set_mm: float) -> list[dict[str, Any]]:
     text = f"set {plain(set_mm)} mm".replace("-", "−")
     return [
         {**ends, "arrowhead": 2, "arrowside": "end+start", "arrowwidth": 1.2},
-        {"x": 0.5 * set_mm, "y": 0, "yanchor": "bottom", "text": text, "showarrow": False},
+        {"x": 0.5 * set_mm, "y": 0, "yanchor": "top", "text": text, "showarrow": False},
     ]
 
 

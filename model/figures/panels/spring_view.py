@@ -16,11 +16,12 @@ PER_ELEMENT = 4
 DIAGONAL, TALLEST = 1.75, 1.3  # of the box of a 3D view, in plotly's units of a scene: a cube has √3 and 1
 
 
-def scene_of(corners: np.ndarray) -> dict[str, Any]:
+def scene_of(corners: np.ndarray, far: float = 1.0) -> dict[str, Any]:
     """Layout of a 3D view in which a box fits, however slender.
 
     Args:
         corners: lowest and highest corner of the box, shape (2, 3), mm.
+        far: factor on the distance of the eye, above 1 in a narrow figure.
     """
     size = np.ptp(corners, axis=0)
     ratio = size * min(DIAGONAL / np.linalg.norm(size), TALLEST / size[2])
@@ -29,7 +30,10 @@ def scene_of(corners: np.ndarray) -> dict[str, Any]:
             **{f"{name}axis": axis(f"{name}, mm", range=corners[:, k].tolist()) for k, name in enumerate("xyz")},
             "aspectmode": "manual",
             "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)),
-            "camera": {"eye": {"x": 1.3, "y": -1.3, "z": 0.5}},
+            "camera": {
+                "eye": {"x": 1.5 * far, "y": -1.5 * far, "z": 0.6 * far},
+                "center": {"x": 0.0, "y": 0.0, "z": -0.1},
+            },
         },
         "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
     }

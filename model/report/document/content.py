@@ -15,7 +15,7 @@ from coilset.model.results.files.opened import is_turned
 from coilset.model.results.limits import case_limits
 from coilset.model.results.records.record import Limit
 from coilset.model.results.records.units import quantity
-from coilset.model.results.records.working import is_working_number, number_name
+from coilset.model.results.records.working import number_name
 from coilset.model.standards import en15800
 from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet
@@ -163,8 +163,7 @@ def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Itera
         mark = "" if result is None else " ✓" if limit.margin(result) >= 0.0 else " ✗"
         value = words.number(result)
         between = f"{words.number(limit.low)} … {words.number(limit.high)}"
-        name = DRAWN.get(limit.name) or (f"{name} mm" if is_working_number(limit.name) else name)
-        yield Line(words(name), between, value, unit + mark)
+        yield Line(words(DRAWN.get(limit.name, name)), between, value, unit + mark)
 
 
 def _finished(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:

@@ -1,5 +1,7 @@
 """Units of the numbers of results, which their names end with."""
 
+import re
+
 UNITS = {
     "_N_per_mm2": "N/mm²",
     "_N_per_mm": "N/mm",
@@ -17,6 +19,8 @@ UNITS = {
     "_percent": "%",
     "least_eigenvalue": "N/mm",
 }
+WORKING = re.compile(r"_at_[\d.]+$")
+"""End of a name without its unit: a working length in mm, or a force in N of `length_at_…`."""
 
 
 def unit_of(name: str) -> str:
@@ -32,7 +36,9 @@ def without_unit(name: str) -> tuple[str, str]:
 
 
 def quantity(name: str) -> tuple[str, str]:
-    """Words and unit of a number of results from its name, as in `set_mm`."""
+    """Words and unit of a number of results from its name, as in `set_mm`; that of a working state has its place."""
     stem, unit = without_unit(name)
     words = stem.replace("_", " ")
+    if WORKING.search(stem):
+        words += " N" if stem.startswith("length") else " mm"
     return f"maximum {words.removesuffix(' max')}" if words.endswith(" max") else words, unit
