@@ -17,6 +17,7 @@ from coilset.model.sweep.figures import findings
 from coilset.model.sweep.figures.capability import capabilities
 from coilset.model.sweep.figures.limits import histogram
 from coilset.model.sweep.figures.sensitivity import rank_correlation
+from coilset.model.sweep.multifidelity import QUANTILES, of_response
 
 FILE = "sweep.nc"
 SHOWN = ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_inside_MPa", "status", "warnings")  # at first
@@ -145,7 +146,16 @@ def _range(data: xr.Dataset, name: str) -> Number:
     if not bool(values.notnull().any()):
         return Number(values.attrs["long_name"], "not reached")
     low, mean, high = (findings.number(value) for value in (values.min(), values.mean(), values.max()))
-    return Number(values.attrs["long_name"], f"{low} to {high} {unit}", f"mean {mean} {unit}")
+    words, extent = values.attrs["long_name"], f"{low} to {high} {unit}"
+    try:
+        estimates = of_response(data, name)
+    except ValueError:  # all cases are of one model
+        return Number(words, extent, f"mean {mean} {unit}")
+    five, _, most = (findings.number(estimates.quantile(level).value) for level in QUANTILES)
+    found = estimates.mean()
+    ends = f"{findings.number(found.low)} to {findings.number(found.high)}"
+    by = f"mean {findings.number(found.value)} ({ends}) from {len(estimates.rod)} rods and uniform ones, of {extent}"
+    return Number(f"{words}, 5 to 95 %", f"{five} to {most} {unit}", by)
 
 
 def _warnings(data: xr.Dataset) -> list[str]:

@@ -167,6 +167,6 @@ def lines(plan: Plan, estimates_of: Callable[[str], ControlVariate]) -> Iterator
             yield f"  {error}"
             continue
         words, unit = quantity(name)
-        found = {"mean": estimates.mean()} | {f"{level:.0%}": estimates.quantile(level) for level in QUANTILES}
+        found = {"mean": estimates.mean()} | {f"{100 * level:g} %": estimates.quantile(level) for level in QUANTILES}
         parts = (f"{word} {one.value:.5g} ({one.low:.5g} to {one.high:.5g})" for word, one in found.items())
         yield f"  {words}, {unit}, {len(estimates.rod):,} and {estimates.uniform:,}: {', '.join(parts)}"

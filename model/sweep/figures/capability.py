@@ -76,10 +76,11 @@ class Capability:
         wanted = (room / (3.0 * WANTED) / self.deviation) ** 2  # of the variance
         left = share - (1.0 - wanted)
         if left > 0.0:
-            return f"tighten {name} ({share:.0%} of the variance) to {np.sqrt(left / share):.0%} of its tolerance"
+            kept = 100.0 * np.sqrt(left / share)
+            return f"tighten {name} ({100.0 * share:.0f} % of the variance) to {kept:.0f} % of its tolerance"
         centred = 0.5 * (self.limit.high - self.limit.low) / (3.0 * self.deviation)
         more = f"; centred the Cpk would be {centred:.2f}" if centred > 1.05 * self.cpk[0] else ""
-        return f"{name} has {share:.0%} of the variance, which is not enough for {WANTED:g} alone{more}"
+        return f"{name} has {100.0 * share:.0f} % of the variance, which is not enough for {WANTED:g} alone{more}"
 
 
 def limits_of(data: xr.Dataset) -> tuple[Limit, ...]:
