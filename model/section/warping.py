@@ -23,16 +23,30 @@ import numpy as np
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.material.creep.in_time import LawOverTime
+from coilset.model.material.law.functions import ROWS_START, SHEAR, YOUNG
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.choice import solid_point
+from coilset.model.material.point.choice import solid_points
+from coilset.model.material.point.solid import hooke
 from coilset.model.runtime.kernels import njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
-from coilset.model.section.condensation import condense, find_warping, strain_operator
+from coilset.model.section.condensation import (
+    Operator,
+    Tables,
+    condense,
+    elastic_stiffness,
+    find_warping,
+    place,
+    strains,
+    work_space,
+)
+from coilset.model.section.fibres import spoil_failed
 from coilset.model.section.ground import cut_sections
 from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
+
+DECIMALS = 12  # of κ r and τ r, to which sections of the same geometry are told by their numbers
 
 
 class WarpingSections:
@@ -81,20 +95,27 @@ class WarpingSections:
         self.components += self.law_over_time.columns(self.components[6:12])
         outline = outline_of(rule)
         basis = Basis.of_disk(degree) if outline is None else outline.basis(degree)
-        self.which, cut = cut_sections(placement, outline)
+        which, cut = cut_sections(placement, outline)
         left, bases = [one.rule(len(rule)) for one in cut], [one.basis(degree) for one in cut]
-        self.points = _with_polynomials([rule.points, *(one.points for one in left)], [basis, *bases])
+        points = _with_polynomials([rule.points, *(one.points for one in left)], [basis, *bases])
         self.weights = np.array([rule.weights, *(one.weights for one in left)])
         whole = rim() if outline is None else outline.rim()
-        self.rim = _with_polynomials([whole, *(one.rim() for one in cut)], [basis, *bases])
-        self.unknowns = 3 + 3 * self.points[2].shape[3]
+        rims = _with_polynomials([whole, *(one.rim() for one in cut)], [basis, *bases])
+        geometry = _geometry(which, radius, placement)
+        self.inside = Tables._make((*geometry, *points, self.weights))
+        self.rim = Tables._make((*geometry, *rims, np.zeros(rims[0].shape)))
+        self.hooke = np.empty((6, 6))
+        hooke(parameters[ROWS_START + YOUNG], parameters[ROWS_START + SHEAR], self.hooke)
+        self.elastic = elastic_stiffness(self.hooke, self.inside)
+        self.unknowns = 3 + 3 * points[2].shape[3]
         # of each thread: sections brought up to date, local iterations on the way
         self.iterations = np.zeros((self.threads.number, 2), dtype=np.int64)
 
     def part(self, cells: slice) -> "WarpingSections":
         """The sections of some of the cells."""
         part = copy.copy(self)
-        part.radius, part.placement, part.which = self.radius[cells], self.placement.part(cells), self.which[cells]
+        part.radius, part.placement = self.radius[cells], self.placement.part(cells)
+        part.inside, part.rim = (one._replace(number=one.number[cells]) for one in (self.inside, self.rim))
         return part
 
     def initial_state(self) -> dict[str, np.ndarray]:
@@ -107,7 +128,7 @@ class WarpingSections:
         shape = self.placement.stretch.shape
         return {
             "point_state": np.tile(row, (*shape, self.weights.shape[1], 1)),
-            "surface_state": np.tile(row, (*shape, self.rim[0].shape[1], 1)),
+            "surface_state": np.tile(row, (*shape, self.rim.y.shape[1], 1)),
             "warping": np.zeros((*shape, self.unknowns)),
             "warping_slope": np.zeros((*shape, self.unknowns, 6)),
         }
@@ -128,12 +149,9 @@ class WarpingSections:
             len(self.radius),
             self.placement.stretch.shape[1] * self.weights.shape[1],
             law,
-            self.which,
-            *self.points,
-            self.weights,
-            self.radius,
-            place.curvature,
-            place.torsion,
+            self.inside,
+            self.elastic,
+            self.hooke,
             strain - start["strain"],
             place.matrices,
             place.stretch,
@@ -154,13 +172,9 @@ class WarpingSections:
         self.threads.run(
             update_surface,
             len(self.radius),
-            self.placement.stretch.shape[1] * self.rim[0].shape[1],
+            self.placement.stretch.shape[1] * self.rim.y.shape[1],
             law,
-            self.which,
-            *self.rim,
-            self.radius,
-            place.curvature,
-            place.torsion,
+            self.rim,
             strain - start["strain"],
             place.matrices,
             start["surface_state"],
@@ -175,19 +189,23 @@ def _with_polynomials(points: Sequence[np.ndarray], bases: Sequence[Basis]) -> t
     return y, z, np.array([basis(one) for basis, one in zip(bases, points, strict=True)])
 
 
+def _geometry(which: np.ndarray, radius: np.ndarray, placement: Placement) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`number`, `wire` and `which` of Tables; sections are the same if they differ by rounding."""
+    R = np.broadcast_to(radius[:, None], which.shape)
+    bends = (np.round(value * R, DECIMALS) / R for value in (placement.curvature, placement.torsion))
+    rows = np.stack([R, *bends, which + 1.0], axis=-1).reshape(-1, 4)
+    found, number = np.unique(rows, axis=0, return_inverse=True)
+    return number.reshape(which.shape), np.ascontiguousarray(found[:, :3]), found[:, 3].astype(np.int64)
+
+
 @njit(cache=True, nogil=True)
 def update_sections(
     ends: np.ndarray,
     part: int,
     p: np.ndarray,
-    which: np.ndarray,
-    y: np.ndarray,
-    z: np.ndarray,
-    f: np.ndarray,
-    w: np.ndarray,
-    radius: np.ndarray,
-    curvature: np.ndarray,
-    torsion: np.ndarray,
+    at: Tables,
+    elastic: np.ndarray,
+    hooke: np.ndarray,
     de: np.ndarray,
     placement: np.ndarray,
     stretch: np.ndarray,
@@ -206,9 +224,8 @@ def update_sections(
     Args:
         ends, part: as in `fibres.update_sections`.
         p: parameters of the material law.
-        which: number of each section among the ground ones, −1 if it is whole, shape (cells, sections).
-        y, z, f, w: points, polynomials and weights, first of the unit disk and then of each ground section.
-        radius, curvature, torsion: of the wire, shape (cells,), (cells, sections), (cells, sections), mm and 1/mm.
+        at: geometry of the sections.
+        elastic: stiffness of elastic sections by their geometry; hooke: tangent of elastic points.
         de, placement, stretch, s, D: as in `fibres.update_sections`.
         old, old_a, old_slope: state of the points with all six stresses, warping, and its slope da/de in the section's
             own strains, at the last equilibrium, shapes (cells, sections, points, n_state), (cells, sections, unknowns)
@@ -219,36 +236,33 @@ def update_sections(
     Returns:
         False if the law or the warping found no solution, or the strains are no numbers.
     """
-    n = a.shape[2]
-    size = 6 + n
-    points = w.shape[1]
-    B, CB = np.zeros((points, 6, size)), np.empty((6, size))
-    K, r, X = np.empty((size, size)), np.empty(size), np.empty((n, n + 7))
-    step, C, dA = np.empty(size), np.empty((6, 6)), np.empty(points)
+    n, points, last = a.shape[2], at.w.shape[1], -1
+    w = work_space(points, n)
+    B, dA = np.zeros((points, 6, len(w.step))), np.empty(points)
     resultant, tangent, work = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
     for c in range(ends[part], ends[part + 1]):
-        R = radius[c]
         for g in range(de.shape[1]):
-            P, i = placement[c, g], which[c, g] + 1
-            strain_operator(y[i], z[i], f[i], R, curvature[c, g], torsion[c, g], B)
-            for k in range(points):
-                dA[k] = math.pi * R * R * w[i, k] * (1.0 - curvature[c, g] * R * y[i, k])
-            to_section(P, de[c, g], step)
+            P, number = placement[c, g], at.number[c, g]
+            if number != last:
+                last = number
+                place(at, number, B, dA)
+            of = Operator(number, B, dA, elastic[number], hooke)
+            to_section(P, de[c, g], w.step)
             good = False
             for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
                 for m in range(n):
                     a[c, g, m] = old_a[c, g, m]
                     for j in range(6):
-                        a[c, g, m] += follow * old_slope[c, g, m, j] * step[j]
-                good = find_warping(
-                    p, B, dA, old[c, g], old_a[c, g], a[c, g], new[c, g], step, C, CB, K, r, X, count[part]
-                )
+                        a[c, g, m] += follow * old_slope[c, g, m, j] * w.step[j]
+                good = find_warping(p, of, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
                 if good:
                     break
             if not good:
                 return False
-            condense(K, r, X, resultant, tangent)
-            slope[c, g] = -X[:, n : n + 6]
+            condense(w, resultant, tangent)
+            for m in range(n):
+                for j in range(6):
+                    slope[c, g, m, j] = -w.X[m, n + j]
             if not math.isfinite(resultant.sum()):
                 return False
             to_chord(P, stretch[c, g], resultant, tangent, work, s[c, g], D[c, g])
@@ -261,13 +275,7 @@ def update_surface(
     ends: np.ndarray,
     part: int,
     p: np.ndarray,
-    which: np.ndarray,
-    y: np.ndarray,
-    z: np.ndarray,
-    f: np.ndarray,
-    radius: np.ndarray,
-    curvature: np.ndarray,
-    torsion: np.ndarray,
+    at: Tables,
     de: np.ndarray,
     placement: np.ndarray,
     old: np.ndarray,
@@ -275,20 +283,17 @@ def update_surface(
     new: np.ndarray,
 ) -> None:
     """Bring points on the surface of a part to the end of the increment `de`, `da` of strains and warping."""
-    n = da.shape[2]
-    B, C = np.zeros((y.shape[1], 6, 6 + n)), np.empty((6, 6))
-    e, strain = np.empty(6), np.empty(6)
+    n, points = da.shape[2], at.w.shape[1]
+    w = work_space(points, n)
+    B, dA, last = np.zeros((points, 6, len(w.step))), np.empty(points), -1
     for c in range(ends[part], ends[part + 1]):
         for g in range(de.shape[1]):
-            i = which[c, g] + 1
-            strain_operator(y[i], z[i], f[i], radius[c], curvature[c, g], torsion[c, g], B)
-            to_section(placement[c, g], de[c, g], e)
-            for k in range(y.shape[1]):
-                for a in range(6):
-                    strain[a] = 0.0
-                    for j in range(6):
-                        strain[a] += B[k, a, j] * e[j]
-                    for j in range(n):
-                        strain[a] += B[k, a, 6 + j] * da[c, g, j]
-                if solid_point(p, old[c, g, k], strain, new[c, g, k], C) < 0:
-                    new[c, g, k, :] = math.nan
+            if at.number[c, g] != last:
+                last = at.number[c, g]
+                place(at, last, B, dA)
+            to_section(placement[c, g], de[c, g], w.step)
+            for j in range(n):
+                w.step[6 + j] = da[c, g, j]
+            strains(B, w)
+            solid_points(p, old[c, g], w.strain, new[c, g], w.C, w.flow)
+            spoil_failed(w.flow, new[c, g])

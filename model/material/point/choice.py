@@ -16,10 +16,9 @@ from coilset.model.material.creep.flow import TIME
 from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.functions import SPIN
 from coilset.model.material.law.parts import OwnPoints, Parts
-from coilset.model.material.point import rod, solid
+from coilset.model.material.point import rod, rod_rows, solid, solid_rows
 from coilset.model.material.point.back_stresses import applies, flow_of_rod
 from coilset.model.material.point.increment import advance
-from coilset.model.material.point.rod_rows import return_map_points
 from coilset.model.runtime.kernels import KERNEL, njit
 
 
@@ -41,6 +40,11 @@ def solid_point(law: Any, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: n
     raise NotImplementedError("only compiled loops call it")
 
 
+def solid_points(law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray) -> bool:
+    """One increment of the law at many points, as in `solid_rows.return_map_points`, or with another law."""
+    raise NotImplementedError("only compiled loops call it")
+
+
 def rod_point(law: Any, old: np.ndarray, e11: float, g12: float, g13: float, new: np.ndarray, C: np.ndarray) -> int:
     """One increment of the rod's law, as in `rod.return_map`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
@@ -52,7 +56,7 @@ def _rod_points(
     law: Any, old: Any, de: Any, new: Any, tangent: Any, with_tangent: Any, count: Any
 ) -> Callable[..., bool]:
     if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, de, new, tangent, with_tangent, count: return_map_points(
+        return lambda law, old, de, new, tangent, with_tangent, count: rod_rows.return_map_points(
             law, old, de, new, tangent, with_tangent, count
         )
     if law.instance_class is OwnPoints:
@@ -114,6 +118,27 @@ def _solid_point(law: Any, old: Any, dD: Any, new: Any, C: Any) -> Callable[...,
     if not isinstance(law, types.BaseNamedTuple):
         return lambda law, old, dD, new, C: solid.return_map(law, old, dD, new, C)
     return lambda law, old, dD, new, C: advance(law, old, dD, new, C)
+
+
+@overload(solid_points, strict=False)
+def _solid_points(law: Any, old: Any, de: Any, new: Any, C: Any, count: Any) -> Callable[..., bool]:
+    if not isinstance(law, types.BaseNamedTuple):
+        return lambda law, old, de, new, C, count: solid_rows.return_map_points(law, old, de, new, C, count)
+    return lambda law, old, de, new, C, count: solids_one_by_one(law, old, de, new, C, count)
+
+
+@njit(**KERNEL)
+def solids_one_by_one(
+    law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
+) -> bool:
+    """One increment at many points, one after the other; counts are at least 1, as every tangent is written."""
+    good, step = True, np.empty(6)
+    for k in range(old.shape[0]):
+        step[:] = de[:, k]
+        count[k] = advance(law, old[k], step, new[k], C[k])
+        good = good and count[k] >= 0
+        count[k] = max(count[k], 1) if count[k] >= 0 else count[k]
+    return good
 
 
 @overload(rod_point, strict=False, inline="always")

@@ -1,0 +1,253 @@
+"""The local problem of `local` at several points at a time, in loops without branches.
+
+The fast path of the law is four files: `local`, the two equations of a point; this one, which solves them at many
+points; `rod` with `rod_rows`, the stresses of a rod's points from it (`solid` with `solid_rows`: all six stresses).
+
+Points are processed in groups. All points of a group get an elastic trial; those that flow are collected, and their
+local problems are solved together. A row holds one quantity of all points of a group, so that vector registers take
+neighbouring points. The loops are short: a processor works ahead in those that follow, while the terms of one wait for
+each other, only as far as its registers reach. They have no branches: points that do not load plastically, or do not
+converge, are marked and left to the return map of one point, as are temperature tables and hardening by a curve.
+"""
+
+import numpy as np
+
+from coilset.model.material.law.functions import N_ROWS, NODES, ROWS_START, hardening, with_deviation
+from coilset.model.material.point.local import (
+    Group,
+    Local,
+    Start,
+    Turn,
+    axial_products,
+    corrected,
+    correction,
+    equations,
+    estimate,
+    group,
+    halved,
+    is_last,
+    nearer,
+    rough_turn,
+    turn,
+)
+from coilset.model.runtime.kernels import INLINE, njit
+
+GROUP = 64  # points processed together
+NEWTON = 8  # iterations at most
+RUNNING, CONVERGED, LEFT_OUT = 0.0, 1.0, 2.0  # how far a point has come
+
+# Rows, each name where its quantity begins. b*, k² and its slope at the start; the inner products of n₀ and e where the
+# plastic part begins, and β.
+WORK = 0
+K2 = WORK + 1
+PRODUCTS = K2 + 2
+BETA = PRODUCTS + 5
+# Newton's method: b* and Λ, b* half way, how far the point has come; k² and its slope at b* and half way, and there ζ
+# and κ with their slopes in the end's b*; s, x of both groups with theirs, and how both groups turn.
+B = BETA + 1
+MULTIPLIER = B + 1
+HALF = MULTIPLIER + 1
+ENDED = HALF + 1
+END = ENDED + 1
+MIDDLE = END + 2
+ZETA = MIDDLE + 2
+KAPPA = ZETA + 2
+GROUP_A = KAPPA + 2
+GROUP_C = GROUP_A + 4
+TURN_A = GROUP_C + 4
+TURN_C = TURN_A + 6
+FORM = TURN_C + 6  # rows of the rod or of the full stress state, the given ones first
+# In rows whose quantity is not needed at the same time: whether the elastic trial leaves the surface; ζ at the end and
+# the Jacobian over its determinant.
+FLOWS = B
+LAST_ZETA, JACOBIAN = KAPPA, GROUP_A
+
+
+@njit(**INLINE)
+def alone(p: np.ndarray) -> bool:
+    """Whether points are left to the return map of one point."""
+    return p[N_ROWS] != 1.0 or p[ROWS_START + NODES] > 0.0
+
+
+@njit(**INLINE)
+def gather(size: int, given: int, place: np.ndarray, w: np.ndarray) -> tuple[int, int]:
+    """Move the points of a group that flow to the front, and repeat the last up to whole vectors.
+
+    Args:
+        size: number of points of the group.
+        given: rows of the form that are given.
+        place: written, the places of those that flow.
+        w: the rows.
+
+    Returns:
+        How many flow, and how many these are in whole vectors.
+    """
+    flow = 0
+    for k in range(size):
+        if w[FLOWS, k] != 0.0:
+            place[flow] = k
+            flow += 1
+    whole = min((flow + 7) // 8 * 8, GROUP)
+    if flow > 0:
+        _move(WORK, PRODUCTS, flow, size, whole, place, w)
+        _move(FORM, FORM + given, flow, size, whole, place, w)
+    return flow, whole
+
+
+@njit(**INLINE)
+def _move(first: int, last: int, flow: int, size: int, whole: int, place: np.ndarray, w: np.ndarray) -> None:
+    if flow < size:
+        for j in range(flow):
+            for i in range(first, last):
+                w[i, j] = w[i, place[j]]
+    for i in range(first, last):
+        for j in range(flow, whole):
+            w[i, j] = w[i, flow - 1]
+
+
+@njit(**INLINE)
+def solve_rows(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> int:
+    """Solve the local problem of points with given rows up to BETA; see `local_of`.
+
+    Args:
+        p: parameter array of the law.
+        ca, cc: moduli of both groups of components.
+        size: number of points.
+        w: the rows.
+
+    Returns:
+        Number of local iterations; `ENDED` is CONVERGED for the points that it is valid for.
+    """
+    _estimate(p, ca, cc, size, w)
+    return _newton(p, ca, cc, size, w)
+
+
+@njit(**INLINE)
+def local_of(w: np.ndarray, j: int) -> Local:
+    """The solution of a point."""
+    return Local(
+        1,
+        False,
+        w[B, j],
+        w[LAST_ZETA, j],
+        w[ZETA + 1, j],
+        _turn(w, TURN_A, j),
+        _turn(w, TURN_C, j),
+        w[JACOBIAN, j],
+        w[JACOBIAN + 1, j],
+        w[JACOBIAN + 2, j],
+        w[JACOBIAN + 3, j],
+    )
+
+
+@njit(**INLINE)
+def harden(p: np.ndarray, size: int, work: int, at: int, w: np.ndarray) -> None:
+    """Write k² and its slope into the rows from `at` on, at the b* of the row `work`."""
+    for j in range(size):
+        w[at, j], w[at + 1, j] = hardening(p, ROWS_START, w[work, j])
+
+
+@njit(**INLINE)
+def start_of(ca: float, cc: float, w: np.ndarray, j: int) -> Start:
+    """What a point's increment starts from."""
+    na, ea, nn, ne, ee = w[PRODUCTS, j], w[PRODUCTS + 1, j], w[PRODUCTS + 2, j], w[PRODUCTS + 3, j], w[PRODUCTS + 4, j]
+    return Start(w[WORK, j], 0.0, ca, na, ea, cc, nn, ne, ee)
+
+
+@njit(**INLINE)
+def _estimate(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> None:
+    """Where Newton's method starts; points that do not load plastically are left out."""
+    for j in range(size):
+        values = with_deviation(p, ROWS_START, w[WORK, j], w[K2, j], w[K2 + 1, j])
+        w[ZETA, j], w[KAPPA, j] = values[2], values[4]
+    for j in range(size):
+        guess = estimate(start_of(ca, cc, w, j), w[K2, j], w[K2 + 1, j], w[ZETA, j], w[KAPPA, j])
+        w[B, j], w[MULTIPLIER, j] = guess.b, guess.multiplier
+        w[ENDED, j] = RUNNING if guess.loads else LEFT_OUT
+
+
+@njit(**INLINE)
+def _newton(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> int:
+    """Newton's method until all have converged."""
+    iteration, running = 0, 1
+    while running > 0 and iteration < NEWTON:
+        iteration += 1
+        _functions(p, size, w)
+        _groups(ca, cc, size, w)
+        if iteration == 1:
+            _approach(ca, cc, size, w)
+        _turns(size, GROUP_A, TURN_A, w)
+        _turns(size, GROUP_C, TURN_C, w)
+        _correct(ca, cc, size, w)
+        running = 0
+        for j in range(size):
+            running += 1 if w[ENDED, j] == RUNNING else 0
+    return iteration
+
+
+@njit(**INLINE)
+def _functions(p: np.ndarray, size: int, w: np.ndarray) -> None:
+    """The material functions at b* and half way."""
+    for j in range(size):
+        w[HALF, j] = 0.5 * (w[WORK, j] + w[B, j])
+    harden(p, size, B, END, w)
+    harden(p, size, HALF, MIDDLE, w)
+    for j in range(size):
+        values = halved(with_deviation(p, ROWS_START, w[HALF, j], w[MIDDLE, j], w[MIDDLE + 1, j]))
+        w[ZETA, j], w[ZETA + 1, j], w[KAPPA, j], w[KAPPA + 1, j] = values[2], values[3], values[4], values[5]
+
+
+@njit(**INLINE)
+def _groups(ca: float, cc: float, size: int, w: np.ndarray) -> None:
+    for j in range(size):
+        zeta, dzeta, kappa, dkappa = w[ZETA, j], w[ZETA + 1, j], w[KAPPA, j], w[KAPPA + 1, j]
+        a, c = group(ca, zeta, dzeta, kappa, dkappa), group(cc, zeta, dzeta, kappa, dkappa)
+        w[GROUP_A, j], w[GROUP_A + 1, j], w[GROUP_A + 2, j], w[GROUP_A + 3, j] = a.s, a.ds, a.x, a.dx
+        w[GROUP_C, j], w[GROUP_C + 1, j], w[GROUP_C + 2, j], w[GROUP_C + 3, j] = c.s, c.ds, c.x, c.dx
+
+
+@njit(**INLINE)
+def _group(w: np.ndarray, row: int, j: int) -> Group:
+    return Group(w[row, j], w[row + 1, j], w[row + 2, j], w[row + 3, j])
+
+
+@njit(**INLINE)
+def _approach(ca: float, cc: float, size: int, w: np.ndarray) -> None:
+    """Bring Λ nearer to n:n = k², whose error is larger than that of b*."""
+    for j in range(size):
+        a, c, start, multiplier = _group(w, GROUP_A, j), _group(w, GROUP_C, j), start_of(ca, cc, w, j), w[MULTIPLIER, j]
+        products, others = axial_products(start), (start.nn, start.ne, start.ee)
+        turns = rough_turn(a, multiplier), rough_turn(c, multiplier)
+        w[MULTIPLIER, j] = nearer(a, c, turns[0], turns[1], products, others, w[END, j], multiplier)[1]
+
+
+@njit(**INLINE)
+def _turns(size: int, group: int, row: int, w: np.ndarray) -> None:
+    for j in range(size):
+        t = turn(_group(w, group, j), w[MULTIPLIER, j])
+        w[row, j], w[row + 1, j], w[row + 2, j] = t.phi, t.y, t.phi_b
+        w[row + 3, j], w[row + 4, j], w[row + 5, j] = t.y_b, t.phi_l, t.y_l
+
+
+@njit(**INLINE)
+def _turn(w: np.ndarray, row: int, j: int) -> Turn:
+    return Turn(w[row, j], w[row + 1, j], w[row + 2, j], w[row + 3, j], w[row + 4, j], w[row + 5, j])
+
+
+@njit(**INLINE)
+def _correct(ca: float, cc: float, size: int, w: np.ndarray) -> None:
+    """One correction by Newton's method; keeps what the solution is made of, if it is the last."""
+    for j in range(size):
+        b, k2, zeta, dzeta = w[B, j], w[END, j], w[ZETA, j], w[ZETA + 1, j]
+        a, c, start = _turn(w, TURN_A, j), _turn(w, TURN_C, j), start_of(ca, cc, w, j)
+        values, middle = (k2, w[END + 1, j], 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, zeta, dzeta, 0.0, 0.0)
+        at = equations(start, values, middle, a, c, b)
+        newton = correction(at)
+        last = is_last(start, k2, at, newton, b) & (b > start.b) & (w[ENDED, j] == RUNNING)
+        w[ENDED, j] = CONVERGED if last else w[ENDED, j]
+        a, c = corrected(a, newton), corrected(c, newton)
+        w[TURN_A, j], w[TURN_A + 1, j], w[TURN_C, j], w[TURN_C + 1, j] = a.phi, a.y, c.phi, c.y
+        w[B, j], w[MULTIPLIER, j] = b + newton.b, w[MULTIPLIER, j] + newton.multiplier
+        w[LAST_ZETA, j] = zeta + dzeta * newton.b
+        w[JACOBIAN, j], w[JACOBIAN + 1, j] = at.r1b * newton.inverse, at.r1l * newton.inverse
+        w[JACOBIAN + 2, j], w[JACOBIAN + 3, j] = at.r2b * newton.inverse, at.r2l * newton.inverse
