@@ -135,7 +135,7 @@ def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
     n = active(trial, B)
     values = functions(p, old[12], temperature)
     count = 0
-    if inner(n, n) > values[0] * (1.0 + 1e-12):
+    if not inner(n, n) <= values[0] * (1.0 + 1e-12):
         beginning = begin(old[12], temperature, G, active(s, B), elastic_deviator(six(dD, 0), G), values[0])
         local = solve(p, beginning.start, values)
         if local.iterations < 0:
