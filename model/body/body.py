@@ -8,7 +8,7 @@ import numpy as np
 from dolfinx import fem
 from petsc4py import PETSc
 
-from coilset.model.body.state import State
+from coilset.model.body.state import Field, State
 
 
 class Moment(NamedTuple):
@@ -27,6 +27,7 @@ class Body(ABC):
     Attributes:
         increment: the increments, mm and rad, a function of the body's space; ghosts are up to date for `update`.
         state: State with the body's own fields.
+        extra: the field of its state that follows the layout's extra unknowns; None if it has none.
         axial_force: E A, the size of forces against which others are rounding, and of the spurious forces that finite
             rotations cause after a correction, N.
         rotation_dofs: local numbers of the nodes' rotations, shape (nodes, 3); ghosts come after all owned unknowns.
@@ -36,6 +37,7 @@ class Body(ABC):
 
     increment: fem.Function
     state: State
+    extra: Field | None = None
     axial_force: float = 0.0
     rotation_dofs: np.ndarray = np.empty((0, 3), np.int32)
     element_dofs: np.ndarray | None = None

@@ -3,7 +3,7 @@
 import logging
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -12,7 +12,7 @@ from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.body.state import State
 from coilset.model.case import Case
-from coilset.model.case.phases import AnyPhase, Phase, TimePhase, drives_at, heads_of
+from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.targets import check_own_law, check_steps, check_targets, check_times, check_working
 from coilset.model.contact.base import Contact
 from coilset.model.contact.build import build_contacts, seats_at
@@ -38,6 +38,7 @@ from coilset.model.run.build import (
     build_wire,
 )
 from coilset.model.run.recorder import Recorder
+from coilset.model.run.stages import stage_of
 from coilset.model.standards.wires.law import case_law
 
 log = logging.getLogger("coilset.steps")
@@ -276,21 +277,8 @@ class LoadHistory:
 
     def stage(self, number: int, loading: Sequence[AnyPhase] = ()) -> Stage:
         """A phase of the case, or of another `loading`, by its number, in the form that the load program expects."""
-        loading = loading or self.case.loading
-        phase, drives = loading[number], drives_at(loading, number)
-        steps = tuple(phase.steps) if isinstance(phase.steps, list) else phase.steps
-        if isinstance(phase, TimePhase):
-            time = phase.duration
-            return Stage(time.keep, None, steps, phase.label, time.length, phase.temperature, drives=drives)
         timeless = self.heat is not None and not self.heat.creeps  # heat flows after each step
-        hours = 0.0 if timeless else (phase.seconds or 0.0) / 3600.0
-        kind: Literal["height", "force"] = "height"
-        value: float | None = None
-        if phase.drives_axially:
-            kind, value = phase.goal(self.spring.free_length, self.spring.block_height)
-        elif number:  # as the last phase left it
-            kind = self.stage(number - 1, loading).kind
-        return Stage(kind, value, steps, phase.label, hours, even=True, drives=drives)
+        return stage_of(loading or self.case.loading, number, self.spring, timeless)
 
     def _keep(self, save: Save | None) -> None:
         if save is not None:

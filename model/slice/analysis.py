@@ -1,7 +1,7 @@
 """From a case to the slice's history: the cylindrical coil of a case file, its section, and its load program."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,8 +12,7 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
-from coilset.model.equilibrium.path.program import FIRST_TIME
-from coilset.model.material.creep.law import SECONDS
+from coilset.model.run.stages import stage_of
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.lattice import Lattice
 from coilset.model.slice.problem import Effort, SliceProblem
@@ -126,7 +125,9 @@ class SliceAnalysis:
         self.points = Watch(self.body, self.lattice.places)
         ξ = np.linspace(*_across(section), 61)
         self.line = Watch(self.body, np.stack([ξ, np.zeros_like(ξ)], axis=1))
-        self.problem = SliceProblem(self.body, _ends_turn(case), SelfContact(self.body))
+        self.problem = SliceProblem(
+            self.body, _ends_turn(case), SelfContact(self.body), turns=self.turns, free_length=self.spring.free_length
+        )
         self.result = SliceResult()
         self._held_force: float | None = None  # N, as time began to pass at constant height
 
@@ -148,14 +149,9 @@ class SliceAnalysis:
                 )
 
     @property
-    def travel(self) -> float:
-        """Shortening of all turns since the start, mm."""
-        return 2.0 * np.pi * self.turns * (self.coil.rise - self.body.rise)
-
-    @property
     def height(self) -> float:
         """Distance between the seats, mm."""
-        return self.spring.free_length - self.travel
+        return self.problem.height
 
     def run(self, report: Callable[[SliceStep], None] = lambda step: None) -> SliceResult:
         """Go through the load program.
@@ -180,73 +176,55 @@ class SliceAnalysis:
         return result
 
     def _phase(self, index: int, phase: AnyPhase, report: Callable[[SliceStep], object]) -> None:
-        steps, relaxes = phase.count(AUTOMATIC), isinstance(phase, TimePhase) and phase.duration.keep == "height"
-        if not relaxes:
+        problem, stage = self.problem, stage_of(self.case.loading, index, self.spring)
+        if not (isinstance(phase, TimePhase) and phase.duration.keep == "height"):
             self._held_force = None
         elif self._held_force is None:
-            self._held_force = self.problem.force
-        marks = phase.steps if isinstance(phase.steps, list) else list(np.arange(1, steps + 1) / steps)
-        kind, begin, end, times = self._course(phase, marks)
-        cold = float(self.body.clock[1])
-        hot = phase.temperature if isinstance(phase, TimePhase) and phase.temperature is not None else cold
-        for k, (mark, hours) in enumerate(zip(marks, np.diff(times, prepend=0.0), strict=True), 1):
-            value, moment = (
-                end if k == steps else begin + mark * (end - begin),
-                (float(hours), cold + mark * (hot - cold)),
-            )
-            if kind == "force":
-                effort = self.problem.go_to_force(value, *moment)
-            elif isinstance(phase, Phase) and phase.to == "block" and k == steps:
-                effort = self._close(value, *moment)
-            else:
-                effort = self.problem.go_to_rise(self._rise(value), None, *moment)
-            problem, pressure = self.problem, self.problem.pressure
-            step = SliceStep(
-                len(self.result.steps) + 1,
-                index,
-                float(mark),
-                self.height,
-                self.travel,
-                float(problem.force),
-                effort.iterations,
-                effort.cuts,
-                pressure.bearing,
-                max(0.0, -pressure.gap),
-                2.0 * np.pi * self.body.rise,
-                float(problem.torque),
-                float(self.body.clock[0]),
-                float(self.body.clock[1]),
-                100.0 * (1.0 - float(problem.force) / self._held_force) if self._held_force else None,
-            )
-            self.result.steps.append(step)
-            report(step)
+            self._held_force = problem.force
+        steps = phase.count(AUTOMATIC)
+        closes = isinstance(phase, Phase) and phase.to == "block"
+        before = (
+            0.0 if not closes or steps == 1 else stage.steps[-2] if isinstance(stage.steps, tuple) else 1 - 1 / steps
+        )
+        if not closes or before:
+            for taken in problem.run(replace(stage, steps=AUTOMATIC if stage.steps == "auto" else stage.steps)):
+                self._record(index, taken.progress, Effort(taken.outcome.iterations, taken.cuts), report)
+                if closes and taken.progress >= (1.0 - SAME) * before:
+                    break
+        if closes:
+            self._record(index, 1.0, self._close(self.spring.block_height, (1.0 - before) * stage.hours), report)
 
-    def _course(self, phase: AnyPhase, marks: list[float]) -> tuple[str, float, float, np.ndarray]:
-        """What is driven, its values at both ends, and the hours since the phase's start at the ends of its steps.
-
-        Equal steps of a hold are equal ones of the logarithm of time, those of a change of temperature equal times, as
-        in the program of a spring.
-        """
-        parts = np.asarray(marks)
-        if isinstance(phase, TimePhase):
-            kind = phase.duration.keep
-            value = self.problem.force if kind == "force" else self.height
-            if phase.hold:
-                parts = np.append(FIRST_TIME * np.expm1(parts[:-1] * np.log1p(1.0 / FIRST_TIME)), 1.0)
-            return kind, value, value, phase.duration.length * parts
-        kind, end = phase.goal(self.spring.free_length, self.spring.block_height)
-        begin = self.problem.force if kind == "force" else self.height
-        return kind, begin, end, (phase.seconds or 0.0) / SECONDS * parts
+    def _record(self, index: int, progress: float, effort: Effort, report: Callable[[SliceStep], object]) -> None:
+        problem, (hours, temperature) = self.problem, self.body.clock[:2].tolist()
+        step = SliceStep(
+            len(self.result.steps) + 1,
+            index,
+            progress,
+            problem.height,
+            self.spring.free_length - problem.height,
+            problem.force,
+            effort.iterations,
+            effort.cuts,
+            problem.pressure.bearing,
+            max(0.0, -problem.pressure.gap),
+            2.0 * np.pi * self.body.rise,
+            problem.torque,
+            hours,
+            temperature,
+            100.0 * (1.0 - problem.force / self._held_force) if self._held_force else None,
+        )
+        self.result.steps.append(step)
+        report(step)
 
     def _rise(self, height: float) -> float:
         return self.coil.rise - (self.spring.free_length - height) / (2.0 * np.pi * self.turns)
 
-    def _close(self, height: float, hours: float, temperature: float) -> Effort:
+    def _close(self, height: float, hours: float) -> Effort:
         """Continue until the coils just touch, slightly above the block height because of the wire's inclination.
 
         Args:
             height: at which the spring's drawing is at block, mm.
-            hours: that the first approach takes; temperature: K.
+            hours: that the first approach takes.
 
         Raises:
             SolveError: if they do not touch.
@@ -254,9 +232,9 @@ class SliceAnalysis:
         rise, limit = self._rise(height), TOUCHING * self.wire_diameter
         iterations = cuts = 0
         for _ in range(APPROACHES):
-            pressure = self.problem.contact.evaluate()
+            pressure = self.problem.pressure
             rise = max(self._rise(height), self.body.rise - self.body.turn * (pressure.gap - 0.5 * limit) / (2 * np.pi))
-            effort, hours = self.problem.go_to_rise(rise, None, hours, temperature), 0.0
+            effort, hours = self.problem.go_to_rise(rise, None, hours), 0.0
             iterations, cuts = iterations + effort.iterations, cuts + effort.cuts
             if abs(self.problem.pressure.gap - 0.5 * limit) <= 0.5 * limit or rise == self._rise(height):
                 return Effort(iterations, cuts)
@@ -277,7 +255,7 @@ class SliceAnalysis:
         return SliceSnapshot(
             name,
             self.height,
-            float(self.problem.force),
+            self.problem.force,
             positions,
             self.points.section_stress(),
             self.points.state[:, 12].copy(),

@@ -1,71 +1,18 @@
 """Contact of adjacent coils: a unilateral elastic bedding between the section's surface and that of the next coil."""
 
-from dataclasses import dataclass
-from typing import Protocol
-
 import numpy as np
 
 from coilset.model.contact.base import one_sided
 from coilset.model.slice.boundary import Boundary
 from coilset.model.slice.forms import RISE, TURN
 from coilset.model.slice.gap import Gaps, Sides, gaps
+from coilset.model.slice.pressure import Pressure
 from coilset.model.slice.slice import Slice
 
 STIFFNESS = 10.0  # default stiffness of the bedding over E/d: as stiff as the triangles at the surface
 ONSET = 1e-4  # distance over which contact sets in, in equivalent wire diameters
 STEEP = 0.3  # minimum component of the normal along the coil's axis for an edge that may touch
 GAUSS = 4  # contact points per edge
-
-
-@dataclass
-class Pressure:
-    """Contact at an increment of the body.
-
-    Attributes:
-        gap: smallest gap, also of corners, mm.
-        free: smallest gap of the points that can be in contact, mm.
-        bearing: number of points in contact.
-        force: pressure times area of all points, per turn of wire, N.
-        forces: on the displacements, shape (blocks, 3), N; numbers: on h̄ and λ, shape (2,), N and N mm.
-        rows, columns, values: entries of its stiffness; h̄ and λ follow the displacements as the last unknowns.
-    """
-
-    gap: float
-    free: float
-    bearing: int
-    force: float
-    forces: np.ndarray
-    numbers: np.ndarray
-    rows: np.ndarray
-    columns: np.ndarray
-    values: np.ndarray
-
-
-class SliceContact(Protocol):
-    """Interaction of the coils: contact, or none.
-
-    Attributes:
-        onset: distance over which contact sets in, mm.
-        blocks: blocks of degrees of freedom that may touch.
-    """
-
-    onset: float
-    blocks: np.ndarray
-
-    def evaluate(self) -> Pressure:
-        """Forces and stiffness at the body's increment."""
-        ...
-
-
-class NoContact:
-    """Coils that pass through each other."""
-
-    onset, blocks = 0.0, np.empty(0, int)
-
-    def evaluate(self) -> Pressure:
-        """No pressure and no closing gap."""
-        none, places = np.empty(0), np.empty(0, int)
-        return Pressure(np.inf, np.inf, 0, 0.0, np.zeros((1, 3)), np.zeros(2), places, places, none)
 
 
 class SelfContact:

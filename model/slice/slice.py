@@ -1,30 +1,31 @@
 """The slice as a body: its position, the state of its points, its forces and their derivatives."""
 
+import itertools
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from dolfinx import fem
+from petsc4py import PETSc
 
 from coilset.meshes.section import SectionMesh
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.errors import InputError
-from coilset.model.material.creep.in_time import LawOverTime
+from coilset.model.body.state import Field, Where
 from coilset.model.material.law.law import Law
+from coilset.model.slice.bordered import BorderedMatrix
 from coilset.model.slice.forms import RISE, TURN, SliceForms, assemble
-from coilset.model.solid.kinematics import push_forward, stretches
-from coilset.model.solid.points import update_points
+from coilset.model.slice.pressure import NO_PRESSURE, SliceContact
+from coilset.model.solid.continuum import Continuum
+from coilset.model.solid.points import MaterialPoints, respond
 
 
 class Follower(Protocol):
     """Something that follows a slice from equilibrium to equilibrium."""
 
     def evaluate(self) -> np.ndarray:
-        """Point states at the slice's increment; raises SolveError if there are none."""
+        """Point states at the slice's increment, trial values of its state; SolveError if there are none."""
         ...
-
-    def accept(self) -> None:
-        """Make what was evaluated last the equilibrium."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +52,10 @@ class Coil:
         return np.array([0.0, -self.rise, self.radius]) / speed
 
 
-class Slice:
+class Slice(Continuum):
     """One section of a uniform coil, updated Lagrange: increments start at the last equilibrium.
+
+    Its last unknowns are h̄ and λ times the coil's radius, so that all unknowns are in mm and all residuals in N.
 
     Args:
         section: SectionMesh.
@@ -63,18 +66,19 @@ class Slice:
     Attributes:
         section, coil, law, forms: as given; SliceForms.
         u: increment of x₀, shape (blocks, 3), mm; a view.
-        increment: of h̄, mm/rad, and λ, shape (2,); a view.
-        state: history rows at the last equilibrium, shape (points, n_state), in spatial axes; trial: at the increment.
-        forces: virtual work of the displacements at the increment, shape (blocks, 3), N.
+        extra: the state's field of the two last unknowns, mm.
+        start: coefficients of x₀ in the unloaded coil, shape (blocks, 3), mm.
         gradient: of the increment at the points in its final configuration, shape (points, 3, 3).
         places, areas: of the points in the unloaded section, shapes (points, 2), mm, and (points,), mm².
-        watches: each is notified of every new equilibrium.
-        clock: hours since the start, temperature (K) and warm hours at the last equilibrium.
-        parameters: the law over the next step, for the compiled loops.
+        turns: whether λ may change; else its derivatives are left out.
+        contact: with the next coil, or None; pressure: its Pressure at the last evaluation.
+        watches: each is evaluated before a new equilibrium.
 
     Raises:
         InputError: a section that reaches the coil's axis, or a temperature outside the material's table.
     """
+
+    extra: Field
 
     def __init__(self, section: SectionMesh, coil: Coil, law: Law, temperature: float | None = None):
         if not coil.radius + section.extent[0] > 0:
@@ -85,49 +89,20 @@ class Slice:
             )
         self.section, self.coil, self.law = section, coil, law
         self.forms = SliceForms(section)
-        self.u = self.forms.u.x.array.reshape(-1, 3)
+        self.V, self.increment = self.forms.V, self.forms.u
+        self.u, self._scale = self.increment.x.array.reshape(-1, 3), np.array([1.0, coil.radius])
         self.forms.x.interpolate(lambda p: np.outer([1.0, 0, 0], coil.radius + p[0]) + np.outer(coil.up, p[1]))
         self.start = self.forms.x.x.array.reshape(-1, 3).copy()
-        self.forms.old.value[:] = coil.rise, 1.0
-        self.increment = self.forms.increment.value
-        self.temperature = law.reference_temperature if temperature is None else temperature
-        self._over_time = LawOverTime(law, law.parameters(temperature), temperature)
-        self.clock = np.array([0.0, self.temperature, 0.0])
-        self.pass_time(0.0)
-        self.watches: list[Follower] = []
-        n = len(self.forms.cells) * len(self.forms.points)
-        self.state = self.unstressed(n)
-        self.trial = self.state.copy()
-        self._stress = self.forms.stress.x.array.reshape(n, 6)
-        self._moduli = self.forms.moduli.x.array.reshape(n, 6, 6)
-        self._strain, self._log = np.empty((n, 6)), np.empty((n, 3))
-        self._axes, self._rotation, self._C = np.empty((n, 3, 3)), np.empty((n, 3, 3)), np.empty((n, 6, 6))
+        super().__init__(
+            MaterialPoints(law, temperature), self.start, 1, len(self.forms.cells) * len(self.forms.points)
+        )
+        self.extra = self.state.add("rise_and_turn", np.array([coil.rise, coil.radius]), Where.SHARED)
+        self._out = self.forms.stress.x.array.reshape(-1, 6), self.forms.moduli.x.array.reshape(-1, 6, 6)
         self.places, self.areas = self._places()
+        self.turns, self.watches = True, list[Follower]()
+        self.contact: SliceContact | None = None
+        self.pressure = NO_PRESSURE
         self.update()
-        self._committed = self._stress.copy(), self._moduli.copy()
-
-    def unstressed(self, points: int) -> np.ndarray:
-        """History rows of unstressed points, shape (points, n_state)."""
-        return np.tile(self._over_time.unstressed(6), (points, 1))
-
-    def pass_time(self, hours: float, temperature: float | None = None) -> None:
-        """Let the next step take some hours, in which the temperature changes linearly; commit and restore end this.
-
-        Raises:
-            ValueError: if the material does not depend on time.
-        """
-        self._end = self.clock
-        if hours > 0.0:
-            if self._over_time.in_time is None:
-                raise ValueError(f"'{self.law.name}' does not depend on time")
-            end = float(self.clock[1]) if temperature is None else temperature
-            self._end = self._over_time.in_time.clock(float(self.clock[0]) + hours, end, self.clock)
-        self.parameters = self._over_time.over({"clock": self.clock}, {"clock": self._end})
-
-    @property
-    def time_passes(self) -> bool:
-        """Whether the next step takes time."""
-        return self._end is not self.clock
 
     def _places(self) -> tuple[np.ndarray, np.ndarray]:
         """Positions of the points in the unloaded section, shape (points, 2), mm, and their areas, mm²."""
@@ -144,74 +119,79 @@ class Slice:
 
         The plane of the section is that of its mean tangents x₀,ξ and x₀,η; within it, both are rotated equally.
         """
+        self._place()
         mean = np.average(self.forms.evaluate_tangents(), axis=0, weights=self.areas)[:, :2]
         U, _, V = np.linalg.svd(mean, full_matrices=False)
         outward, upward = (U @ V).T  # the nearest pair of orthogonal unit vectors
         return np.stack([np.cross(upward, outward), outward, upward], axis=1)
 
     @property
-    def x(self) -> np.ndarray:
-        """Coefficients of the current x₀, shape (blocks, 3), mm."""
-        return self.forms.x.x.array.reshape(-1, 3) + self.u
+    def rows(self) -> np.ndarray:
+        """Trial rows of the points, shape (points, n_state), in spatial axes."""
+        return self.point_state[0]
 
     @property
     def rise(self) -> float:
         """h̄ now, mm/rad."""
-        return float(self.forms.old.value[RISE] + self.increment[RISE])
+        return float(self.extra.trial[RISE])
 
     @property
     def turn(self) -> float:
         """λ now."""
-        return float(self.forms.old.value[TURN] + self.increment[TURN])
+        return float(self.extra.trial[TURN] / self.coil.radius)
+
+    # ---- Body ------------------------------------------------------------------------------------------------------
 
     def update(self) -> bool:
-        """Update stresses, moduli and forces to the increment.
+        """Update stresses, moduli and contact to the increment; see Body."""
+        self._move()
+        self._place()
+        self.gradient, rows = self.forms.evaluate_gradient(), (self._rows.equilibrium[0], self._rows.trial[0])
+        good = respond(self.points, self.gradient, rows, self._out)
+        if good and self.contact is not None:
+            self.pressure = self.contact.evaluate()
+        return good
 
-        Returns:
-            False if it inverts the material at some point or the law finds no solution somewhere.
-        """
-        self.gradient = self.forms.evaluate_gradient()
-        if stretches(self.gradient, self._strain, self._axes, self._rotation, self._log) != 0:
-            return False
-        if update_points(self.parameters, self.state, self._strain, self.trial, self._C) != 0:
-            return False
-        push_forward(self.trial, self._C, self._axes, self._rotation, self._log, self._stress, self._moduli, False)
-        self.forces = assemble(self.forms["residual"]).reshape(-1, 3)
-        return True
+    def _place(self) -> None:
+        """Give the forms the last equilibrium and the increments."""
+        forms, extra = self.forms, self.extra
+        forms.x.x.array[:] = self._x.equilibrium.ravel()
+        forms.old.value[:] = extra.equilibrium / self._scale
+        forms.increment.value[:] = extra.trial / self._scale - forms.old.value
 
-    def commit(self) -> None:
-        """Make the increment of the last `update` the equilibrium; its moduli are kept to start the next step.
-
-        Raises:
-            SolveError: if the law finds no solution at a watched point; then nothing has changed.
-        """
+    def advance(self) -> None:
+        """Integrate the law at the watched points; see Body."""
         for watch in self.watches:
             watch.evaluate()
-        for watch in self.watches:
-            watch.accept()
-        self.forms.x.x.array[:] += self.forms.u.x.array
-        self.forms.old.value[:] += self.increment
-        self.state[:] = self.trial
-        self.clock = self._end
-        self.pass_time(0.0)
-        self.u[:], self.increment[:] = 0.0, 0.0
-        for kept, now in zip(self._committed, (self._stress, self._moduli), strict=True):
-            kept[:] = now
-
-    def restore(self) -> None:
-        """Go back to the last equilibrium, including its stresses and moduli."""
-        self.u[:], self.increment[:] = 0.0, 0.0
-        for kept, now in zip(self._committed, (self._stress, self._moduli), strict=True):
-            now[:] = kept
-        self.trial[:] = self.state
-        self.pass_time(0.0)
-        self.forces = assemble(self.forms["residual"]).reshape(-1, 3)
-
-    def start_elastic(self) -> None:
-        """Start the next step with the elastic moduli, as is correct when the load reverses."""
-        self.u[:], self.increment[:] = 0.0, 0.0
-        self.update()
 
     def resultants(self) -> np.ndarray:
-        """Axial force on the slice, tension positive, N, and torque about the coil's axis, N mm."""
+        """Axial force on the slice, tension positive, N, and torque about the coil's axis, N mm, without contact."""
         return np.array([fem.assemble_scalar(self.forms["resultant", k]) for k in (RISE, TURN)])
+
+    def internal_forces(self, vector: np.ndarray) -> None:
+        """Add ∫ σ : δε and the forces of contact; see Body."""
+        vector[:-2] += assemble(self.forms["residual"]) + self.pressure.forces.ravel()
+        vector[-2:] += (self.resultants() + self.pressure.numbers) / self._scale
+
+    def create_matrix(self, rows: int) -> PETSc.Mat:
+        """A matrix with the rows and columns of h̄ and λ, and room for contact; see Body."""
+        self._matrix = BorderedMatrix(self.forms["tangent"], None if self.contact is None else self.contact.blocks)
+        return self._matrix.petsc
+
+    def tangent(self, matrix: PETSc.Mat) -> None:
+        """Write the derivatives of the internal forces; see Body."""
+        forms, scale, n = self.forms, self._scale, self.u.size
+        numbers = (RISE, TURN) if self.turns else (RISE,)
+        columns, rows, corner = np.zeros((2, n)), np.zeros((2, n)), np.zeros((2, 2))
+        for k in numbers:
+            columns[k], rows[k] = (assemble(forms[kind, k]) / scale[k] for kind in ("column", "row"))
+        for i, j in itertools.product(numbers, repeat=2):
+            corner[i, j] = fem.assemble_scalar(forms["corner", i, j]) / (scale[i] * scale[j])
+        contact, scales = self.pressure, np.append(np.ones(n), scale)
+        values = contact.values / (scales[contact.rows] * scales[contact.columns])
+        self._matrix.assemble(columns, rows, corner, (contact.rows, contact.columns, values))
+        self._rounding = 0.5 * np.finfo(float).eps * np.linalg.norm(matrix.getDiagonal().array[:n] * self.x.ravel())
+
+    def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
+        """Rows of prescribed increments become those of the identity; see Body."""
+        matrix.zeroRows(rows.astype(PETSc.IntType), diag=self.constraint_weight)

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from coilset.model.base.errors import SolveError
+from coilset.model.body.state import Where
 from coilset.model.slice.slice import Slice
-from coilset.model.solid.kinematics import push_forward, stretches
-from coilset.model.solid.points import update_points
+from coilset.model.solid.points import respond
 
 NEIGHBOURS = 20  # integration points per patch
 
@@ -26,15 +26,20 @@ class Watch:
 
     Attributes:
         places: as given.
-        state: point states at the last equilibrium, shape (n, n_state), in space.
     """
 
     def __init__(self, body: Slice, places: np.ndarray):
         self.body, self.places = body, np.atleast_2d(np.asarray(places, float))
         self._weights = patch_weights(body.places, self.places)
-        self.state = body.unstressed(len(self.places))
-        self._trial = self.state.copy()
+        self._rows = body.state.add(
+            f"watch_{len(body.watches)}", body.points.initial_state(len(self.places)), Where.CELL
+        )
         body.watches.append(self)
+
+    @property
+    def state(self) -> np.ndarray:
+        """Point states at the last equilibrium, shape (n, n_state), in space."""
+        return self._rows.equilibrium
 
     def evaluate(self) -> np.ndarray:
         """Point states at the body's increment, shape (n, n_state); a view, overwritten by the next call.
@@ -42,19 +47,11 @@ class Watch:
         Raises:
             SolveError: if the law finds no solution at some point.
         """
-        n = len(self.places)
-        gradient = np.einsum("np,pij->nij", self._weights, self.body.gradient)
-        strain, log, axes, rotation = np.empty((n, 6)), np.empty((n, 3)), np.empty((n, 3, 3)), np.empty((n, 3, 3))
-        C, stress, moduli = np.empty((n, 6, 6)), np.empty((n, 6)), np.empty((n, 6, 6))
-        good = stretches(gradient, strain, axes, rotation, log) == 0
-        if not good or update_points(self.body.parameters, self.state, strain, self._trial, C) != 0:
+        n, gradient = len(self.places), np.einsum("np,pij->nij", self._weights, self.body.gradient)
+        rows, unused = (self._rows.equilibrium, self._rows.trial), (np.empty((n, 6)), np.empty((n, 6, 6)))
+        if not respond(self.body.points, gradient, rows, unused):
             raise SolveError("the law finds no stress at an output point of the section; use smaller steps")
-        push_forward(self._trial, C, axes, rotation, log, stress, moduli, False)
-        return self._trial
-
-    def accept(self) -> None:
-        """Make what was evaluated last the equilibrium."""
-        self.state[:] = self._trial
+        return self._rows.trial
 
     def section_stress(self, state: np.ndarray | None = None) -> np.ndarray:
         """Stress in the current axes of the section: 1 along the wire, 2 outward, 3 upward.

@@ -9,6 +9,7 @@ from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.choice import solid_point
 from coilset.model.runtime.kernels import njit
+from coilset.model.solid.kinematics import push_forward, stretches
 
 
 @njit(cache=True)
@@ -59,3 +60,31 @@ class MaterialPoints:
     def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
         """Write new point states and moduli, see `update_points`; returns False if the law found no solution."""
         return update_points(self._point_law, old, strain, new, C) == 0
+
+
+def respond(
+    points: MaterialPoints,
+    gradient: np.ndarray,
+    rows: tuple[np.ndarray, np.ndarray],
+    out: tuple[np.ndarray, np.ndarray],
+    symmetric: bool = False,
+) -> bool:
+    """Stresses and moduli in space after increments of the motion.
+
+    Args:
+        points: the law.
+        gradient: of the increments in their final configuration, shape (points, 3, 3).
+        rows: old and new point states, shape (points, n_state); the new ones are written.
+        out: stresses and moduli, written, see `push_forward`.
+        symmetric: keep only the symmetric part of the moduli.
+
+    Returns:
+        False if the material is inverted at some point, or the law found no solution.
+    """
+    n, (old, new) = len(gradient), rows
+    strain, log_stretch = np.empty((n, 6)), np.empty((n, 3))
+    axes, rotation, C = np.empty((n, 3, 3)), np.empty((n, 3, 3)), np.empty((n, 6, 6))
+    if stretches(gradient, strain, axes, rotation, log_stretch) != 0 or not points.update(old, strain, new, C):
+        return False
+    push_forward(new, C, axes, rotation, log_stretch, *out, symmetric)
+    return True

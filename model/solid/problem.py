@@ -22,7 +22,8 @@ from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
 from coilset.model.solid.heads import Head, Motion, Reaction
 from coilset.model.solid.multigrid import VertexMultigrid, any_free_vertex
-from coilset.model.solid.solid import PointLaw, Solid
+from coilset.model.solid.points import MaterialPoints
+from coilset.model.solid.solid import Solid
 
 STEPS = StepControl(smallest=2.0**-6)
 
@@ -32,7 +33,7 @@ class SolidProblem:
 
     Args:
         wire: SolidMesh.
-        points: the law at the points, as `MaterialPoints`.
+        points: the law at the points.
         solver: ``direct``, ``multigrid``, ``multigrid-cg`` or ``auto``, see coilset.model.equilibrium.newton.methods.
         precision: ε of (6.3.1): out-of-balance forces relative to the change of the heads' forces in the step.
         options: further PETSc options, which override those of the solver.
@@ -48,7 +49,7 @@ class SolidProblem:
     def __init__(
         self,
         wire: SolidMesh,
-        points: PointLaw,
+        points: MaterialPoints,
         solver: str = "auto",
         precision: float = 1e-7,
         options: Mapping[str, Any] | None = None,

@@ -27,7 +27,7 @@ def moved():
     def move(body, seed=0, size=2e-2):
         rng = np.random.default_rng(seed)
         body.u[:] = size * rng.normal(size=body.u.shape)
-        body.increment[:] = -0.3, 0.01
+        body.extra.trial[:] += -0.3, 0.01 * body.coil.radius
         assert body.update()
         return rng
 

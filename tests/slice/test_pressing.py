@@ -91,17 +91,16 @@ def test_coils_touch_and_part_again(make_slice):
     problem = SliceProblem(body, contact=SelfContact(body))
     press(problem, 6.0)
     free = problem.force
-    assert not problem.touching
+    assert not problem.pressure.bearing
     # the section is 5 mm high along the axis over the cosine of its inclination: 5.004 mm at block
     problem.go_to_rise(5.03 / (2 * np.pi))
     assert problem.pressure.gap == pytest.approx(5.03 - 5.004, abs=6e-3)
     problem.go_to_force(600.0)
-    assert problem.touching
     assert problem.pressure.bearing > 0
     assert 0 < -problem.pressure.gap < 1e-3 * 5
     assert problem.pressure.force == pytest.approx(600.0 - free, rel=0.02)  # per turn, nearly along the axis
     problem.go_to_force(0.0)
-    assert not problem.touching
+    assert not problem.pressure.bearing
     assert problem.pressure.gap > 0
 
 
@@ -112,7 +111,7 @@ def test_coils_touch_where_their_corners_do(make_slice, outline, off):
     body = make_slice("elastic", outline=outline, pitch=5.5)
     along = body.start[:, 2] - body.coil.rise * np.arctan2(body.start[:, 1], body.start[:, 0])
     contact, height = SelfContact(body), np.ptp(along)
-    body.increment[0] = (1.0 + off) * height / (2 * np.pi) - body.coil.rise
+    body.extra.trial[0] = (1.0 + off) * height / (2 * np.pi)
     assert body.update()
     moved = body.x[:, 2] - body.rise * np.arctan2(body.x[:, 1], body.x[:, 0])
     left = 2 * np.pi * body.rise - np.ptp(moved)
@@ -154,7 +153,7 @@ def test_any_section_balances(make_slice):
     problem = SliceProblem(body)
     press(problem, 2.0)
     F = body.forms.evaluate_tangents()
-    σ = body.state[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+    σ = body.rows[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
     area = np.cross(F[:, :, 0], F[:, :, 1]) * body.areas[:, None]  # of the section in space, by Nanson
     force = np.einsum("pij,pj->i", σ, area) * np.sign(area[:, 1].mean())
     assert -force[2] == pytest.approx(problem.force, rel=1e-3)
@@ -165,7 +164,7 @@ def test_no_equilibrium_is_said_and_the_last_one_kept(make_slice):
     problem = SliceProblem(body)
     press(problem, 3.0)
     force, rise = problem.force, body.rise
-    with pytest.raises(SolveError, match="no equilibrium of the slice"):
+    with pytest.raises(SolveError, match="no equilibrium beyond"):
         problem.go_to_force(100 * force)
     assert problem.force >= force
     assert 2 * np.pi * body.rise <= 2 * np.pi * rise + 1e-9
@@ -177,7 +176,7 @@ def test_an_output_point_without_stress_leaves_the_last_equilibrium(make_slice, 
     first, second = (Watch(body, [[ξ, 0.0]]) for ξ in (-2.5, 2.5))
     problem = SliceProblem(body)
     press(problem, 3.0, 2)
-    before = problem.force, problem.torque, body.rise, body.x.copy(), body.state.copy(), first.state.copy()
+    before = problem.force, problem.torque, body.rise, body.x.copy(), body.rows.copy(), first.state.copy()
 
     def fails():
         raise SolveError("the law finds no stress")
@@ -185,7 +184,7 @@ def test_an_output_point_without_stress_leaves_the_last_equilibrium(make_slice, 
     monkeypatch.setattr(second, "evaluate", fails)
     with pytest.raises(SolveError, match="the law finds no stress"):
         problem.go_to_rise(body.coil.rise - 4.0 / (2 * np.pi))
-    after = problem.force, problem.torque, body.rise, body.x, body.state, first.state
+    after = problem.force, problem.torque, body.rise, body.x, body.rows, first.state
     assert all(np.array_equal(one, other) for one, other in zip(before, after, strict=True))
     monkeypatch.undo()
     problem.go_to_rise(body.coil.rise - 4.0 / (2 * np.pi))

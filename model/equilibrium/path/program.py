@@ -2,9 +2,9 @@
 
 import logging
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Protocol
 
 import numpy as np
 
@@ -15,9 +15,10 @@ from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.path.continuation import Continuation
 from coilset.model.equilibrium.path.step_control import Path, Position
 from coilset.model.equilibrium.settings import Drive
-from coilset.model.equilibrium.system.heads import AXIAL, Heads
+from coilset.model.equilibrium.system.heads import AXIAL, When
 from coilset.model.equilibrium.system.layout import SEATS
 from coilset.model.equilibrium.system.load import Load
+from coilset.model.equilibrium.system.system import System
 
 log = logging.getLogger("coilset.steps")
 START = Moment(0.0, 0.0)
@@ -91,15 +92,49 @@ class StepTaken:
     outcome: Outcome
 
 
+class Driven(Protocol):
+    """What a load program drives: coilset.model.equilibrium.system.heads.Heads, or what takes their place."""
+
+    free_length: float
+    measure: int
+    system: System
+
+    @property
+    def height(self) -> float:
+        """See Heads, as all that follows."""
+        ...
+
+    @property
+    def force(self) -> float:
+        """Axial force at the last equilibrium."""
+        ...
+
+    def load(self, values: Mapping[int, float], forces: Mapping[int, float], kept: Collection[int] = ()) -> Load:
+        """The load to values and forces of freedoms."""
+        ...
+
+    def freedom_at(self, height: float) -> float:
+        """Value of the axial freedom at a height."""
+        ...
+
+    def freedoms(self, when: When) -> np.ndarray:
+        """Values of all freedoms."""
+        ...
+
+    def reactions(self, when: When) -> np.ndarray:
+        """Forces that are conjugate to them."""
+        ...
+
+
 class LoadProgram:
     """Drives a spring through stages.
 
     Args:
-        control: Heads.
+        control: Heads, or what takes their place.
         continuation: Continuation.
     """
 
-    def __init__(self, control: Heads, continuation: Continuation) -> None:
+    def __init__(self, control: Driven, continuation: Continuation) -> None:
         self.control, self.continuation = control, continuation
         self.begin(0)
 

@@ -35,6 +35,7 @@ class Layout:
         self.index_map = dofmap.index_map
         self.owned = dofmap.index_map.size_local * self.block_size
         self.body_size = dofmap.index_map.size_global * self.block_size
+        self._vector_block = 1 if extra % self.block_size else self.block_size
         self.has_extra = self.comm.rank == self.comm.size - 1
         self.size_local, self.size = self.owned + (extra if self.has_extra else 0), self.body_size + extra
         self.start = self.index_map.local_range[0] * self.block_size
@@ -58,8 +59,8 @@ class Layout:
     def vector(self, values: np.ndarray | None = None) -> PETSc.Vec:
         """A PETSc vector of the unknowns: new and zero, or around this rank's `values`, shape (size_local,)."""
         if values is None:
-            return PETSc.Vec().createMPI((self.size_local, None), bsize=self.block_size, comm=self.comm)
-        return PETSc.Vec().createWithArray(values, (self.size_local, None), bsize=self.block_size, comm=self.comm)
+            return PETSc.Vec().createMPI((self.size_local, None), bsize=self._vector_block, comm=self.comm)
+        return PETSc.Vec().createWithArray(values, (self.size_local, None), bsize=self._vector_block, comm=self.comm)
 
     def extra(self, values: np.ndarray) -> np.ndarray:
         """The extra unknowns of this rank's part `values` of a vector, the same on every rank."""

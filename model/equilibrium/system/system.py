@@ -68,6 +68,7 @@ class System:
         self.state = body.state
         self.memories = [contact.memory for contact in self.contacts if contact.memory is not None]
         self._seats = None if seats is None else self.state.add("seats", np.array(seats, float), Where.SHARED)
+        self._extra = body.extra or self._seats
         for number, memory in enumerate(self.memories):
             self.state.include(f"contact_{number}_", memory.state)
         trial = self.state.add("increments", np.zeros(layout.size_local), Where.UNKNOWN).trial
@@ -116,8 +117,8 @@ class System:
             self._body_increments[: self.layout.owned] = values[: self.layout.owned]
             if self.comm.size > 1:
                 self.body.increment.x.scatter_forward()
-            if self._seats is not None:
-                np.add(self._seats.equilibrium, self.layout.extra(values), out=self._seats.trial)
+            if self._extra is not None:
+                np.add(self._extra.equilibrium, self.layout.extra(values), out=self._extra.trial)
             self._evaluate_trial(values.copy())
             self._evaluated = content
         return self.last.has_stress
