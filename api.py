@@ -47,7 +47,7 @@ from coilset.model.material.law.own import OwnLaw
 from coilset.model.material.programs import Program
 from coilset.model.material.programs import run as run_program
 from coilset.model.results.characteristic import place_at
-from coilset.model.results.files.folder import make, refuse_results, write_summary
+from coilset.model.results.files.folder import make, refuse_results, write_history, write_summary
 from coilset.model.results.files.labelled import labelled
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import Step
@@ -410,16 +410,15 @@ def slice_(case: Case, section: str | None = None) -> Result:
     162 N
     """
     from coilset.meshes.section_shapes import parse
-    from coilset.model.slice.analysis import SliceAnalysis
+    from coilset.model.slice.analysis import SliceAnalysis, SliceStep
     from coilset.model.slice.output import write_fields
     from coilset.model.slice.summary import summarise as summarise_slice
-    from coilset.model.slice.summary import write_history
 
     analysis = SliceAnalysis(case._case, parse(section) if section else None)
     analysis.run()
 
     def write(folder: Path) -> None:
-        write_history(folder, analysis.result.steps)
+        write_history(folder, analysis.result.steps, SliceStep)
         write_fields(folder, analysis)
         write_summary(folder, {**summarise_slice(analysis), "origin": origin(case._case)})
 

@@ -33,41 +33,6 @@ def gauss_points(
     return spring.centre_line(turn), spring.tangent(turn), spring.speed(turn) * (end - start)
 
 
-def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poisson: float = 0.3) -> np.ndarray:
-    """Nodes of a polygon of straight rods that represents the wire.
-
-    A chord over the angle φ is shorter than its arc and closer to the axis. Under an axial force F it carries the
-    torque F r cos(φ/2) and bending up to F r sin(φ/2), with EI = (1 + ν) GJ for a round wire, so that inscribed rods
-    are too stiff by `1 − sin(φ/2)/(φ/2) · (cos²(φ/2) + sin²(φ/2)/(3 (1 + ν)))`: 3.5 % at 16 elements per turn. Moving
-    the nodes outwards corrects this.
-
-    Args:
-        spring: `Spring`.
-        turns: increasing turns of the nodes, shape (n + 1,).
-        keep: ``points``, the nodes are on the centre line; ``length``, the chords are as long as their arcs;
-            ``compliance``, they are as compliant as the arcs under an axial force.
-        poisson: ν, for ``compliance``.
-
-    Returns:
-        The nodes, shape (n + 1, 3), mm.
-    """
-    nodes = spring.centre_line(turns)
-    if keep == "points":
-        return nodes
-    φ = 2 * np.pi * np.diff(turns)
-    # between elements of different lengths, the mean of what both require
-    half = 0.5 * np.concatenate([φ[:1], 0.5 * (φ[1:] + φ[:-1]), φ[-1:]])
-    shortening = np.sin(half) / half
-    if keep == "length":
-        outwards = 1 / shortening
-    elif keep == "compliance":
-        outwards = (shortening * (np.cos(half) ** 2 + np.sin(half) ** 2 / (3 * (1 + poisson)))) ** (-1 / 3)
-    else:
-        raise ValueError(f"keep must be points, length or compliance, not {keep!r}")
-    nodes[:, :2] *= outwards[:, None]
-    return nodes
-
-
 class Placement(NamedTuple):
     """Positions of the true sections of a curved wire relative to the chords, and the wire's curvature there.
 

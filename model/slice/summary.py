@@ -1,15 +1,13 @@
 """The main numbers of a slice's run, under the names used for a spring's run, and some more."""
 
-from dataclasses import asdict, fields
-from pathlib import Path
+from dataclasses import asdict
 
 import numpy as np
 
 from coilset.model.base.warning import Warning
-from coilset.model.results.files.folder import write_table
 from coilset.model.results.records.summary_entries import UNSEEN
 from coilset.model.results.records.warnings import beyond_validity
-from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot, SliceStep
+from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.slice.watch import equivalent, shear
 from coilset.model.standards.case_warnings import case_warnings
 
@@ -89,12 +87,3 @@ def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
         at = int(np.argmax(values))
         out |= {f"surface_{name}_max_MPa": float(values[at]), f"surface_{name}_max_at_mm": places[at].tolist()}
     return out
-
-
-def write_history(folder: Path, steps: list[SliceStep]) -> None:
-    """history.csv: one row per step, numbers with all digits."""
-    write_table(
-        Path(folder) / "history.csv",
-        [column.name for column in fields(SliceStep)],
-        (asdict(step).values() for step in steps),
-    )

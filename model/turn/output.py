@@ -1,6 +1,5 @@
 """Numbers, files and figures of turns as a solid, each beside those of the rod."""
 
-from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +9,10 @@ from matplotlib.figure import Figure
 from coilset.model.base.style import STYLE
 from coilset.model.figures import display
 from coilset.model.figures.png import save
-from coilset.model.results.files.folder import make, write_table
+from coilset.model.results.files.folder import make
 from coilset.model.results.files.grid_file import write_grid
 from coilset.model.solid.output import picture
-from coilset.model.turn.analysis import TurnAnalysis, TurnStep
+from coilset.model.turn.analysis import TurnAnalysis
 
 FIELD = "von Mises stress"
 
@@ -55,12 +54,6 @@ def summarise(analysis: TurnAnalysis) -> dict[str, Any]:
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
     }
-
-
-def write_history(folder: Path, analysis: TurnAnalysis) -> None:
-    """history.csv: one row per step, numbers with all digits."""
-    names = [column.name for column in fields(TurnStep)]
-    write_table(folder / "history.csv", names, (asdict(step).values() for step in analysis.result.steps))
 
 
 def write_fields(folder: Path, analysis: TurnAnalysis) -> None:

@@ -12,10 +12,10 @@ from coilset.meshes.section_shapes import parse
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case, read_case
-from coilset.model.results.files.folder import clear, prepare, write_summary
+from coilset.model.results.files.folder import clear, prepare, write_history, write_summary
 from coilset.model.results.records.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
-from coilset.model.slice.summary import summarise, write_history
+from coilset.model.slice.summary import summarise
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.progress import HEAD, quantity, step_row
@@ -99,7 +99,7 @@ def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures
     from coilset.model.slice import output
 
     clear(out)
-    write_history(out, analysis.result.steps)
+    write_history(out, analysis.result.steps, SliceStep)
     output.write_fields(out, analysis)
     write_summary(out, {**summary, "origin": origin(analysis.case)})  # before the picture, which takes longest
     if pictures:

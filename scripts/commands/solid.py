@@ -12,7 +12,7 @@ from coilset.meshes.solid_grid import SectionGrid
 from coilset.model.base.agreement import on_first_rank
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import read_case
-from coilset.model.results.files.folder import clear, prepare, write_summary
+from coilset.model.results.files.folder import clear, prepare, write_history, write_summary
 from coilset.model.results.records.provenance import origin
 from coilset.model.turn import output
 from coilset.model.turn.analysis import GRID, LAYERS, TurnAnalysis, TurnStep
@@ -100,7 +100,7 @@ def _row(step: TurnStep) -> str:
 
 def _write(out: Path, analysis: TurnAnalysis, summary: dict[str, Any], pictures: bool) -> None:
     clear(out)
-    output.write_history(out, analysis)
+    write_history(out, analysis.result.steps, TurnStep)
     output.write_fields(out, analysis)
     write_summary(out, {**summary, "origin": origin(analysis.case)})  # before the pictures, which take longest
     if pictures and analysis.result.moments:

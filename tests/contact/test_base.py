@@ -8,7 +8,8 @@ from coilset.model.contact.coils import Coils
 from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.hold import Groove, Mount
 from coilset.model.contact.seat import Seat
-from coilset.model.contact.thesis_gaps import Gaps, Stops
+from coilset.model.contact.thesis_gaps import Gaps
+from coilset.verification.stops import Stops
 
 LEVEL = np.where(np.arange(12) == 8, 27.5, 0.0)
 PRESSED = np.where(np.arange(12) == 8, 12.2, 0.0)

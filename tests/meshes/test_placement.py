@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from coilset.meshes.springs.placement import gauss_points, polygon_nodes
+from coilset.meshes.springs.placement import gauss_points
 from coilset.meshes.springs.spring import SpringSpec
+from coilset.verification.spring_references.representation import polygon_nodes
 
 ν = 0.3
 ξ, W = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3), np.array([0.5, 0.5])

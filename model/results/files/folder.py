@@ -172,11 +172,10 @@ def write_summary(folder: str | Path, summary: Mapping[str, Any]) -> None:
         path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
-def write_history(folder: str | Path, steps: Sequence[Step]) -> None:
-    """history.csv: one row per step; numbers with all their digits."""
-    write_table(
-        Path(folder) / "history.csv", [item.name for item in fields(Step)], (asdict(step).values() for step in steps)
-    )
+def write_history(folder: str | Path, steps: Sequence[Any], kind: type[Any] = Step) -> None:
+    """history.csv: one row per step; numbers with all their digits; `kind` is the dataclass of the steps."""
+    names = [column.name for column in fields(kind)]
+    write_table(Path(folder) / "history.csv", names, (asdict(step).values() for step in steps))
 
 
 def write_seats(folder: str | Path, seats: Sequence[SeatReactions]) -> None:

@@ -28,12 +28,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
-from coilset.model.contact.thesis_gaps import Stops
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.section.rules import polar
 from coilset.verification import figures
 from coilset.verification.frame import KEEP, Frame
+from coilset.verification.stops import Stops
 from coilset.verification.study import Study
 
 FAST = True
