@@ -6,7 +6,7 @@ from typing import Any
 
 from coilset.model.figures.panels.panel import with_unit
 from coilset.model.results.files.opened import Run, is_turned
-from coilset.model.results.records.labels import largest_errors, within
+from coilset.model.results.records.labels import largest_errors, lives_text, within
 from coilset.model.results.records.units import quantity
 
 
@@ -197,7 +197,6 @@ def _limit(limit: Mapping[str, Any]) -> list[str]:
 
 
 def _fatigue(entry: Mapping[str, Any]) -> list[str]:
-    lives = entry["lives"]
     return [
         entry["criterion"],
         with_unit(entry["amplitude_MPa"], ""),
@@ -205,7 +204,7 @@ def _fatigue(entry: Mapping[str, Any]) -> list[str]:
         with_unit(entry["safety"], "", 2),
         with_unit(entry["turn"], "", 2),
         f"{entry['angle_deg']:z.0f}°".replace("-", "−"),
-        "–" if lives is None else ", ".join(f"{life:.2g}" for life in lives.values()),
+        lives_text(entry["lives"], "–"),
     ]
 
 

@@ -22,6 +22,7 @@ from coilset.model.results.records.labels import plain
 
 LEAST_OFF = 1e-12  # relative, to which the figure goes down
 FOUND = "found"  # the folder of the results of found.yaml, beside it
+FINER = ("mesh", "contact", "accuracy")  # entries of a case that a finer run of it has otherwise
 
 
 def write_design_report(folder: str | Path) -> Path:
@@ -80,7 +81,8 @@ def found_run(folder: Path, design: Mapping[str, Any]) -> Run | None:
         run = open_run(folder / FOUND)
     except InputError:
         return None
-    return run if run.case == design["origin"]["case"] else None
+    cases = ({name: case[name] for name in case if name not in FINER} for case in (run.case, design["origin"]["case"]))
+    return run if next(cases) == next(cases) else None
 
 
 def search(design: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Panel:

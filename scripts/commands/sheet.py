@@ -72,6 +72,7 @@ def sheet(
     with naming(case_file):
         spring = case.spring.build()
         made = case_sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
+    body = None if height is None else _pressed(spring, height, files)
     diagram = _diagram(made) if pictures else None
     refuse_to_replace([*files, *([folder / FIGURE] if diagram is not None else [])], force)
     parts = sections(made)
@@ -95,8 +96,8 @@ def sheet(
 
         name = Path(results).resolve().name if results else ""
         content = document(case, spring, made, name, warnings, Words(language))
-        if height is not None:
-            content = replace(content, body=spring.at_height(height))
+        if body is not None:
+            content = replace(content, body=body)
         for file in files:
             write(content, file)
             console.say(f"sheet in {file}")
@@ -104,6 +105,16 @@ def sheet(
         make(folder)
         write_png(folder / FIGURE, [diagram_of(*diagram, run.residual if run else None)])
         console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
+
+
+def _pressed(spring: Spring, height: float, files: Sequence[Path]) -> Spring:
+    """The spring at `--height`; raises InputError if it cannot have it, or no solid body is written."""
+    if not any(file.suffix.lower() == ".step" for file in files):
+        raise InputError("is that of a solid body; add --out spring.step", "--height")
+    try:
+        return spring.at_height(height)
+    except InputError as error:
+        raise InputError(error.problem, "--height") from None
 
 
 def _otherwise(run: from_results.Found, case: Case) -> list[str]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
-from coilset.model.results.records.labels import largest_errors, within
+from coilset.model.results.records.labels import largest_errors, lives_text, within
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.results.records.units import quantity as name_and_unit
 from coilset.model.run.analysis import Analysis
@@ -247,14 +247,12 @@ def limit_line(limit: Mapping[str, Any]) -> str:
 def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:
     """Fatigue by each criterion, of summary.json, a row each; stresses in MPa."""
     table = Table(show_header=True, box=None, padding=(0, 1))
-    for head in ("fatigue by", "amplitude", "endured", "safety", "turn", "angle", "lives, 10, 50, 90 %"):
+    for head in ("fatigue by", "MPa", "endured", "safety", "turn", "angle", "lives 10, 50, 90 %"):
         table.add_column(head, justify="right", no_wrap=True)
     for one in entries:
         numbers = (f"{one[name]:.0f}" for name in ("amplitude_MPa", "endured_MPa"))
-        lives = "-" if one["lives"] is None else ", ".join(f"{life:.2g}" for life in one["lives"].values())
-        table.add_row(
-            one["criterion"], *numbers, f"{one['safety']:.2f}", f"{one['turn']:.2f}", f"{one['angle_deg']:.0f}°", lives
-        )
+        place = f"{one['safety']:.2f}", f"{one['turn']:.2f}", f"{one['angle_deg']:z.0f}°"
+        table.add_row(one["criterion"], *numbers, *place, lives_text(one["lives"], "-"))
     return table
 
 

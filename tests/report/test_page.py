@@ -19,6 +19,7 @@ from coilset.model.figures.panels.phases import phases
 from coilset.model.figures.panels.seats import force_centre
 from coilset.model.figures.wire import closed, frames, inside, shear_around, tubes
 from coilset.model.material import library
+from coilset.model.report import design_page
 from coilset.model.report.page import CHAPTERS, write_report
 from coilset.model.report.render import GLOSSARY
 from coilset.model.results.files.opened import open_run
@@ -253,3 +254,13 @@ def test_a_kill_while_it_is_written_leaves_the_page_before(folder, page):
     write_report(open_run(folder))
     assert path.read_text(encoding="utf-8") == page
     assert not list(folder.glob(".*"))
+
+
+def test_a_design_shows_what_it_found_even_of_a_finer_run(tmp_path, folder):
+    """`solve` runs a case again with a finer mesh where its accuracy requires that; the spring is the same."""
+    (tmp_path / design_page.FOUND).symlink_to(folder)
+    case = open_run(folder).case
+    coarser = case | {"mesh": case["mesh"] | {"elements_per_turn": 4.0}}
+    assert design_page.found_run(tmp_path, {"origin": {"case": coarser}}) is not None
+    other = case | {"spring": case["spring"] | {"turns": 3.5}}
+    assert design_page.found_run(tmp_path, {"origin": {"case": other}}) is None

@@ -186,6 +186,9 @@ def _finished(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
 def _fatigue(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
     for entry in summary.get("fatigue") or ():
         yield Line(words(f"safety, {entry['criterion']}"), "", words.number(entry["safety"], 3))
+        if entry.get("lives"):
+            lives = "; ".join(words.number(life, 2) for life in entry["lives"].values())
+            yield Line(words("  cycles that 10, 50, 90 % do not survive"), "", lives)
 
 
 def _free_length(sheet: Sheet) -> float:

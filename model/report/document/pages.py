@@ -87,7 +87,7 @@ def _head(axes: Axes, made: Document) -> None:
 
 def _numbers(axes: Axes, made: Document) -> None:
     text = made.words(f"scale {made.drawing.scale}")
-    axes.text(WIDTH - MARGIN, HEIGHT - MARGIN - HEAD - 1.0, f"mm, N   {text}", fontsize=7, ha="right", va="top")
+    axes.text(WIDTH - MARGIN, HEIGHT - MARGIN - HEAD - 1.0, f"mm, N · {text}", fontsize=7, ha="right", va="top")
 
 
 def _drawing(axes: Axes, drawing: Drawing, top: float) -> float:

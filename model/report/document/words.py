@@ -130,6 +130,7 @@ GERMAN = {
     "safety against the allowable at {} mm": "Sicherheit gegen zul. bei {} mm",
     "Fatigue of the run": "Ermüdung nach dem Lauf",
     "safety, {}": "Sicherheit, {}",
+    "cycles that 10, 50, 90 % do not survive": "Lastspiele, die 10, 50, 90 % nicht erreichen",
     "Force over travel": "Kraft über Federweg",
     "travel, mm": "Federweg, mm",
     "force, N": "Kraft, N",

@@ -20,6 +20,11 @@ def plain(value: float, digits: int = 4) -> str:
     return "0" if text == "-0" else text
 
 
+def lives_text(lives: Mapping[str, float] | None, missing: str) -> str:
+    """Cycles that 10, 50 and 90 % do not survive, as in `1.7e6, 3.5e6, 6.9e6`; `missing` without any."""
+    return missing if lives is None else ", ".join(f"{life:.2g}".replace("e+0", "e") for life in lives.values())
+
+
 def within(value: float | None, error: float | None, unit: str, digits: int) -> str:
     """A value with its unit in the digits that its error allows, `13.28 ± 0.02 mm`, at most `digits` decimals.
 
