@@ -39,7 +39,7 @@ from coilset.model.base.errors import CoilsetError, InputError, SolveError, read
 from coilset.model.case.case import Case as CheckedCase
 from coilset.model.case.case import check, read_case
 from coilset.model.case.settings import put
-from coilset.model.equilibrium.path.step_control import StepSizes
+from coilset.model.equilibrium.path.step_sizes import StepSizes
 from coilset.model.material import library
 from coilset.model.material.law.condense import condense as _condense
 from coilset.model.material.law.law import Law as _LibraryLaw
@@ -308,7 +308,7 @@ class Result:
 
         >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
         >>> print(f"{result.force_at(10):.0f} N when pressed, {result.force_at(15, phase=1):.0f} N on release")
-        178 N when pressed, 70 N on release
+        178 N when pressed, 71 N on release
         """
         return place_at(self.data, travel, phase).force
 

@@ -18,7 +18,7 @@ from coilset.meshes.springs.manufacture import Peening, Relief
 from coilset.meshes.springs.measured import MeasuredSpec
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.shapes import CurvedAxis, DiameterProfile, Length, Profile, profile_function
-from coilset.meshes.springs.wire import WireSpec
+from coilset.meshes.springs.wire_section import WireSpec
 from coilset.meshes.tails import Arms, Hooks, tail
 from coilset.model.base.errors import InputError
 from coilset.model.base.strict_entries import Strict

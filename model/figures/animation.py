@@ -10,7 +10,7 @@ from coilset.model.base.errors import CoilsetError
 from coilset.model.base.style import DIVERGING, QUARTERED, round_end
 from coilset.model.figures.display import ensure
 from coilset.model.figures.scene import ABOVE
-from coilset.model.figures.wire import closed, frames, tubes
+from coilset.model.figures.wire_surface import closed, frames, tubes
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.opened import Run
 

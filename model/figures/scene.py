@@ -9,7 +9,7 @@ import pyvista as pv
 import pyvista.plotting
 
 from coilset.model.base.style import DIVERGING, ROUND, SEQUENTIAL, round_end
-from coilset.model.figures.wire import closed, coil_turns, inside, loading_stress, outline, surface
+from coilset.model.figures.wire_surface import closed, coil_turns, inside, loading_stress, outline, surface
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain

@@ -8,7 +8,7 @@ import meshio
 import numpy as np
 
 from coilset.model.figures.vtkhdf import write_vtkhdf
-from coilset.model.figures.wire import frames, section_points, tubes
+from coilset.model.figures.wire_surface import frames, section_points, tubes
 from coilset.model.results.files.folder import make, whole
 from coilset.model.results.files.opened import Run
 

@@ -12,7 +12,7 @@ from coilset.model.base.errors import InputError, reading
 from coilset.model.base.style import round_end
 from coilset.model.figures.panels.panel import Panel, Trace, axis, curve, with_unit
 from coilset.model.figures.panels.spring_view import scene_of, shown_surface, surface_trace
-from coilset.model.figures.wire import closed, frames, tubes
+from coilset.model.figures.wire_surface import closed, frames, tubes
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.output import STEPS, characteristic
 from coilset.model.report.answer import Number

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from mpi4py import MPI
 
 from coilset.model.case import Case
-from coilset.model.equilibrium.path.step_control import StepSizes
+from coilset.model.equilibrium.path.step_sizes import StepSizes
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.record import Result, Step
 from coilset.model.run.error_estimates import estimated, without_errors

@@ -19,7 +19,7 @@ from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.contact.curve import CentreLine, WirePoints
 from coilset.model.equilibrium.path.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.path.stability import Stability, mode_in_words
-from coilset.model.equilibrium.path.step_control import StepSizes
+from coilset.model.equilibrium.path.step_sizes import StepSizes
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
 from coilset.model.manufacture.initial_state import give_past

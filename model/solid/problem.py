@@ -15,7 +15,7 @@ from coilset.model.equilibrium.newton.methods import MULTIGRID, SYMMETRIC, solid
 from coilset.model.equilibrium.newton.newton import Newton, Start
 from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.path.continuation import Continuation
-from coilset.model.equilibrium.path.step_control import Path
+from coilset.model.equilibrium.path.step_sizes import Path
 from coilset.model.equilibrium.settings import NewtonControl, StepControl
 from coilset.model.equilibrium.system.layout import Layout
 from coilset.model.equilibrium.system.load import Load

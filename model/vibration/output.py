@@ -11,7 +11,7 @@ from coilset.model.base.style import STYLE
 from coilset.model.figures.png import save
 from coilset.model.figures.series import PER_ELEMENT, tube_cells
 from coilset.model.figures.vtkhdf import write_vtkhdf
-from coilset.model.figures.wire import surface
+from coilset.model.figures.wire_surface import surface
 from coilset.model.results.files.folder import make, write_table
 from coilset.model.results.records.labels import plain
 from coilset.model.section.surface import Inside

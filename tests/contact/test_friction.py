@@ -16,7 +16,7 @@ from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
-from coilset.verification.wires import wire_points
+from coilset.verification.wire_points import wire_points
 
 BEDDING, ONSET, MU = 1e3, 0.5, 0.3  # a long onset: no point comes to its end by the differences
 SPRING = {

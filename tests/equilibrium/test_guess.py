@@ -9,7 +9,7 @@ from petsc4py import PETSc
 
 from coilset.model.body.state import State, Where
 from coilset.model.equilibrium.path.guess import Guess
-from coilset.model.equilibrium.path.step_control import Position
+from coilset.model.equilibrium.path.step_sizes import Position
 from coilset.model.equilibrium.system.load import Load
 
 LOAD = SimpleNamespace(held=np.array([], dtype=int), layout=SimpleNamespace(comm=MPI.COMM_SELF))

@@ -17,7 +17,7 @@ from coilset.model.figures.panels.characteristic import NAMED, characteristic
 from coilset.model.figures.panels.material_curves import material_curve
 from coilset.model.figures.panels.phases import phases
 from coilset.model.figures.panels.seats import force_centre
-from coilset.model.figures.wire import closed, frames, inside, shear_around, tubes
+from coilset.model.figures.wire_surface import closed, frames, inside, shear_around, tubes
 from coilset.model.material import library
 from coilset.model.report import design_page
 from coilset.model.report.page import CHAPTERS, write_report

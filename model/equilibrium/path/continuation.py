@@ -19,8 +19,8 @@ from coilset.model.equilibrium.path.branch_switching import Snap
 from coilset.model.equilibrium.path.guess import Guess
 from coilset.model.equilibrium.path.next_touch import CROSSING, NEAR, RESTART, SHORT, NextTouch
 from coilset.model.equilibrium.path.stability import Stability
-from coilset.model.equilibrium.path.step_control import ON_MARK, Path, StepSizes
 from coilset.model.equilibrium.path.step_error import StepError
+from coilset.model.equilibrium.path.step_sizes import ON_MARK, Path, StepSizes
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Load
 

@@ -24,7 +24,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.base.agreement import max_of_ranks
-from coilset.model.equilibrium.path.step_control import Position
+from coilset.model.equilibrium.path.step_sizes import Position
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System

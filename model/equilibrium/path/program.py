@@ -13,7 +13,7 @@ from coilset.model.body.body import Moment
 from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.path.continuation import Continuation
-from coilset.model.equilibrium.path.step_control import Path, Position
+from coilset.model.equilibrium.path.step_sizes import Path, Position
 from coilset.model.equilibrium.settings import Drive
 from coilset.model.equilibrium.system.heads import AXIAL, When
 from coilset.model.equilibrium.system.layout import SEATS

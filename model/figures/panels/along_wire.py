@@ -3,7 +3,7 @@
 import numpy as np
 
 from coilset.model.figures.panels.panel import Panel, axis, curve, with_unit
-from coilset.model.figures.wire import inside, loading_stress, section_turns, shear_around
+from coilset.model.figures.wire_surface import inside, loading_stress, section_turns, shear_around
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
 

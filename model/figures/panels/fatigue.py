@@ -4,7 +4,7 @@ import numpy as np
 
 from coilset.model.figures.panels.panel import Panel, axis
 from coilset.model.figures.panels.spring_view import PER_ELEMENT, scene_of, shown_surface
-from coilset.model.figures.wire import coil_turns, inside, section_turns, surface
+from coilset.model.figures.wire_surface import coil_turns, inside, section_turns, surface
 from coilset.model.results.files.opened import Run
 
 NOTE = "1 where the wire just endures: amplitude of fully reversed stress that damages as much, over that endured."

@@ -8,7 +8,7 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 from coilset.model.base.style import round_end
 from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, with_unit
 from coilset.model.figures.rings import FilledSection
-from coilset.model.figures.wire import inside, outline
+from coilset.model.figures.wire_surface import inside, outline
 from coilset.model.results.files.opened import Run
 
 PIXELS = 121  # of a map, across the wire

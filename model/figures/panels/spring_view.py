@@ -6,7 +6,7 @@ import numpy as np
 
 from coilset.model.base.style import round_end
 from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, with_unit
-from coilset.model.figures.wire import bent_frames, closed, frames, tubes
+from coilset.model.figures.wire_surface import bent_frames, closed, frames, tubes
 from coilset.model.results.files.opened import Run
 
 RINGS = 6000  # of all moments of a page together

@@ -18,7 +18,7 @@ from coilset.model.body.body import Moment
 from coilset.model.body.state import State
 from coilset.model.case import Case
 from coilset.model.equilibrium.path.program import ProgramPosition, Stage
-from coilset.model.equilibrium.path.step_control import Position
+from coilset.model.equilibrium.path.step_sizes import Position
 from coilset.model.equilibrium.settings import Drive
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.results.files import state_file

@@ -23,7 +23,7 @@ from coilset.model.material import library
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
-from coilset.verification.wires import wire_points
+from coilset.verification.wire_points import wire_points
 
 FAST = True
 LENGTH, RADIUS, SLOPE, ELEMENTS = 200.0, 1.0, 0.01, 80  # mm, mm, rad

@@ -23,7 +23,7 @@ from coilset.model.material.law.law import Law
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
-from coilset.verification.wires import wire_points
+from coilset.verification.wire_points import wire_points
 
 FAST = True
 LENGTHS, RADII, PLACES, ANGLE = (200.0, 240.0), (2.0, 3.0), (0.5, 0.25), np.pi / 3.0  # mm, mm, of l, rad

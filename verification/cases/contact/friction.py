@@ -25,7 +25,7 @@ from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
-from coilset.verification.wires import wire_points
+from coilset.verification.wire_points import wire_points
 
 LOAD, NODES, RADIUS, LENGTH = 10.0, 11, 2.0, 100.0  # N at each node, mm
 MU, STEPS, TRAVEL = 0.3, 10, 15.0

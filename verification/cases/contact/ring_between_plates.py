@@ -33,7 +33,7 @@ from coilset.model.material import library
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
-from coilset.verification.wires import wire_points
+from coilset.verification.wire_points import wire_points
 
 FAST = True
 RING, RADIUS, ELEMENTS = 100.0, 1.0, 96  # mm, mm, rods of half a ring

@@ -1,4 +1,4 @@
-"""How long steps are: where they end, when they are cut, how they grow again.
+"""Sizes of steps: where they end, how they are cut, how they grow again.
 
 Equal steps end on their marks, also after a cut. Automatic ones take the size that their error and the iteration allow.
 """

@@ -1,4 +1,4 @@
-"""Wires in frames, as contact sees them."""
+"""The points of wires in frames, as contact sees them."""
 
 import numpy as np
 
