@@ -39,7 +39,9 @@ def run_of(folder):
         for length, force in ((55.0, 110.0), (42.0, 290.0))
     ]
     summary = {"free_length_before_mm": 65.0, "free_length_after_mm": 63.0, "set_mm": 2.0, "material": "wire"}
-    summary |= {"working": states, "force_at_42_N": 290.0}
+    lives = {"10": 1.7e6, "50": 3.5e6, "90": 1.2e10}
+    fatigue = {"criterion": "Haigh", "safety": 0.9, "lives": lives}
+    summary |= {"working": states, "force_at_42_N": 290.0, "fatigue": [fatigue]}
     (folder / "summary.json").write_text(json.dumps(summary))
     (folder / "history.csv").write_text("seat_height_mm,force_N\n50,210\n40,330\n50,180\n63,0\n")
     return from_results.read(folder)
@@ -62,6 +64,7 @@ def test_the_table_has_the_formulas_and_the_run_with_their_words(tmp_path):
     assert rows["Kraft bei 55 mm"] == ["144,7", "110", "N"]
     assert rows["Kraft bei 42 mm"] == ["300 … 350", "290", "N ✗"]  # its limits come last
     assert rows["Windungsrichtung"][0] == "links"
+    assert rows["Lastspiele, die 10, 50, 90 % nicht erreichen"][1] == "1,7e6; 3,5e6; 1,2e10"
     assert rows["Druckfeder"][0].startswith("Ergebnisse des Laufs out")
     before = WRITERS[".csv"](made()).decode("utf-8-sig")
     assert "Calculated by the formulas of EN 13906-1, EN 15800, before a run" in before

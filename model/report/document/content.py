@@ -13,6 +13,7 @@ from coilset.model.report.document.view import Drawing, Level, view
 from coilset.model.report.document.words import Words
 from coilset.model.results.files.opened import is_turned
 from coilset.model.results.limits import case_limits
+from coilset.model.results.records.labels import lives_text
 from coilset.model.results.records.record import Limit
 from coilset.model.results.records.units import quantity
 from coilset.model.results.records.working import number_name
@@ -187,8 +188,8 @@ def _fatigue(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
     for entry in summary.get("fatigue") or ():
         yield Line(words(f"safety, {entry['criterion']}"), "", words.number(entry["safety"], 3))
         if entry.get("lives"):
-            lives = "; ".join(words.number(life, 2) for life in entry["lives"].values())
-            yield Line(words("  cycles that 10, 50, 90 % do not survive"), "", lives)
+            lives = lives_text(entry["lives"], "").replace(", ", "; ")
+            yield Line(words("  cycles that 10, 50, 90 % do not survive"), "", words.comma(lives))
 
 
 def _free_length(sheet: Sheet) -> float:

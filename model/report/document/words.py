@@ -173,7 +173,7 @@ class Words:
             return text.replace(bare, GERMAN[bare])
         for pattern, german in self._patterns:
             if found := pattern.fullmatch(bare):
-                return text.replace(bare, german.format(*map(self._comma, found.groups())))
+                return text.replace(bare, german.format(*map(self.comma, found.groups())))
         return text
 
     @cached_property
@@ -183,8 +183,8 @@ class Words:
 
     def number(self, value: float | None, digits: int = 4) -> str:
         """A number in this language, empty for None."""
-        return "" if value is None else self._comma(plain(value, digits).replace(",", "").replace("-", "−"))
+        return "" if value is None else self.comma(plain(value, digits).replace(",", "").replace("-", "−"))
 
-    def _comma(self, text: str) -> str:
+    def comma(self, text: str) -> str:
         """With a decimal comma where the language has one."""
         return re.sub(r"(?<=\d)\.(?=\d)", ",", text) if self.language == "de" else text

@@ -22,7 +22,9 @@ def plain(value: float, digits: int = 4) -> str:
 
 def lives_text(lives: Mapping[str, float] | None, missing: str) -> str:
     """Cycles that 10, 50 and 90 % do not survive, as in `1.7e6, 3.5e6, 6.9e6`; `missing` without any."""
-    return missing if lives is None else ", ".join(f"{life:.2g}".replace("e+0", "e") for life in lives.values())
+    if lives is None:
+        return missing
+    return ", ".join(f"{life:.2g}".replace("e+", "e").replace("e0", "e") for life in lives.values())
 
 
 def within(value: float | None, error: float | None, unit: str, digits: int) -> str:
