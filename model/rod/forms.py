@@ -116,12 +116,9 @@ def section_strains(
     small, as in the thesis.
 
     The first two of the element's own unknowns are the shear angles in excess of those that its rotations produce in
-    an elastic element, u = shear − c ½ (t1 + t2), c = Φ/(1 + Φ), Φ = 12 E I/(G A l²); `timoshenko_factor` is c. The
-    chord's curve is H1 … H4 with the same bow b = u + ½ (t1 + t2) at both ends and ±(t2 − t1)/2 besides. The solution
-    does not depend on c, but a finite rotation within an iteration leaves an error of second order: with c = 0 in the
-    curvature, 6/l times as large, which needs more iterations the shorter the elements are; with c = 1 in the shear
-    angle, which needs more the longer they are. With Timoshenko's c its effect is smallest, and the matrix has no
-    entries 12 E I/l³ that cancel. The others are the modes of its strains, see coilset.model.rod.elements.
+    an elastic element, u = shear − c ½ (t1 + t2) with Timoshenko's c, `timoshenko_factor` (docs/theory/element.md says
+    why). The chord's curve is H1 … H4 with the same bow b = u + ½ (t1 + t2) at both ends and ±(t2 − t1)/2 besides. The
+    others are the modes of its strains, see coilset.model.rod.elements.
     """
     d = E.T * increment.d
     frame = as_vector([spin, -d[2] / l, d[1] / l])

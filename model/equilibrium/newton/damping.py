@@ -1,15 +1,7 @@
 """Damping of Newton's corrections along weak modes, where contacts or yielding stop them.
 
-Where coils can slide off each other the tangent K has a weak mode, along which a correction is many wire diameters
-long. The search then leaves a hundredth of it, and as little of what the correction does to all other modes. With the
-tangent K + c M instead (pseudo-transient continuation: backward Euler for M ẋ = −F with the time step 1/c) a mode of
-the stiffness κ is corrected by the share κ/(κ + c): stiff ones wholly, weak ones by as much as is possible. So
-
-    c → c + κ (1/λ − 1),   κ = y·F/(y·M y)
-
-where the share λ of a correction y was made, and c → c · RELAX where all of it was, until c is nothing beside κ: close
-to the equilibrium the iteration is Newton's. The forces F have no damping, so that the equilibrium is the same. See
-C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508.
+A correction is solved for with K + c M; docs/theory/equilibrium.md derives c from the shares of corrections that were
+made. The forces have no damping, so that the equilibrium is the same.
 """
 
 import math

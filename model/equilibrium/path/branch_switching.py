@@ -1,14 +1,7 @@
 """Snap-through: from an unstable state, or beyond the end of a path, to a stable state.
 
-Loads and prescribed values are constant, and a drag slows the spring down: over a time step Δt it exerts
-
-    c M (x − x₀),    c = 1/Δt,
-
-where x₀ is the state before and M weights displacements and rotations. That is backward Euler for M ẋ = −r(x). The step
-minimises Π(x) + c/2 (x − x₀)·M (x − x₀), so the potential Π falls in each step for any c, and the path ends only in a
-state of rest. If the lowest eigenvalue λ of the tangent is negative, c = 2 |λ|: a drag below |λ| would not suffice, and
-with this one the weakest mode doubles in a step. Otherwise c is such that a step moves the wire by about its radius,
-and when it is below λ > 0 the state is solved for without drag.
+Loads and prescribed values are constant, and a drag slows the spring down, c M (x − x₀) over a step from x₀; the
+potential falls in each step, and the path ends only in a state of rest. docs/theory/stability.md derives it, and c.
 """
 
 import logging

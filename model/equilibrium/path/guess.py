@@ -1,23 +1,7 @@
 """Where a step starts: an extrapolation of the last steps on the path.
 
-The mean rates of two steps, Δ₁/h₁ and Δ₂/h₂, belong to the middles of these; the straight line through both gives that
-of a next step of length h, so that
-
-    Δ = h (r₂ + (r₂ − r₁) (h + h₂)/(h₁ + h₂)),   r = Δ/h
-
-is wrong by terms of third order, h r₂ alone by terms of second order. Rotation vectors may be added so because those of
-neighbouring steps are nearly parallel. At a kink of the path, where the wire begins to yield or a contact closes, the
-rates differ more than they would along a smooth one, and r₂ alone is the better guess.
-
-Where the rate r at the end of the last step is known from its tangent, the parabola through both equilibria has it:
-
-    Δ = h r + (h/h₂)² (h₂ r − Δ₂),
-
-and at a kink within the last step h r alone goes on as the path does behind it.
-
-Where a head is turned, sections turn by much more than they bend, and rates are nearly constant in the sections' own
-directions, not in space. They are then carried on with the sections: with the rotations φ per length of the last step,
-by exp(φ (h + h₂)/2) from the middle of the last step, and by exp(φ (h + 2 h₂ + h₁)/2) from that of the step before.
+With two steps it is of second order in their rates, with the rate at the end of the last step the parabola that has it;
+at a kink of the path it is the last rate alone. docs/theory/equilibrium.md ("Where a step starts") has the equations.
 """
 
 import numpy as np
@@ -35,7 +19,7 @@ class Guess:
 
     Args:
         system: System.
-        bend: part of h r₂ that the difference of the rates may add to it; with more the path has a kink.
+        bend: part of a step by the last rate that the change of rates may add to it; with more the path has a kink.
 
     Attributes:
         carried: whether rates are carried on with the sections.

@@ -1,17 +1,10 @@
 """What the length of the steps leaves wrong: an estimate after each step, and the size that the next one may have.
 
-A body that estimates errors gives the work ΔW of the error of its inner forces on the step's deformation. By the
-principle of virtual work, with the step's own increments instead of the deformation that a small travel makes, the
-driven head's force is wrong by
-
-    ΔF = ΔW / Δs   at its height,   and its height by   Δs_F = ΔF / (∂F/∂s)   at its force,
-
-where Δs is the step's travel and ∂F/∂s its secant. Of the error that comes in with one step, the work on the first
-step's deformation, which is elastic, gives in the same way what will be wrong when the spring is released: the set. The
-greater of both, ΔF', is of third order in the step's size h, so that h (a/ΔF')^⅓ is the size of a step that brings in
-a. What all steps together leave, E, shall not exceed the required accuracy, A: where more than half of it is used up,
-a step may bring in less to E, in proportion to the rest of it, 2 (1 − |E|/A). Over an automatic step in which contacts
-close or open the path of strains is taken for kinked.
+A body that estimates errors gives the works of the error of its inner forces on the step's deformation, from which the
+errors of the driven head's force and height follow, and on the first step's, which is elastic: what will be wrong when
+the spring is released, the set. docs/theory/equilibrium.md ("Step size") derives them. What all steps together leave
+shall not exceed the required accuracy: where more than half of it is used up, a step may bring in less, in proportion
+to the rest.
 """
 
 import math
