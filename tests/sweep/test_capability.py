@@ -60,7 +60,7 @@ def test_the_input_with_the_greatest_share_is_to_be_tightened():
     wanted = 10.0 / (3.0 * 1.33)
     part = np.sqrt((wanted**2 - 1.44) / 16.0)  # of the wire's tolerance, so that both together have `wanted`
     assert found.advice.startswith("tighten wire")
-    assert float(found.advice.split()[-4].rstrip("%")) == pytest.approx(100.0 * part, abs=8.0)
+    assert float(found.advice.split()[-5]) == pytest.approx(100.0 * part, abs=8.0)
     assert "outside" in next(iter(lines([found])))
 
 
