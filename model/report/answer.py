@@ -46,7 +46,7 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     s = summary
     before, after = s["free_length_before_mm"], s["free_length_after_mm"]
     share = (
-        f"{100.0 * s['set_mm'] / before:.1f} % of the free length"
+        f"{with_unit(100.0 * s['set_mm'] / before, '%', 1)} of the free length"
         if s["set_mm"] is not None
         else "the spring was not released"
     )
@@ -228,6 +228,6 @@ def _working(state: Mapping[str, Any]) -> list[str]:
         with_unit(state["shear_inside_MPa"], "", 0, "–"),
         with_unit(state["shear_inside_turn"], "", 2, "–"),
         with_unit(state["safety"], "", 2, "–"),
-        "–" if x is None else f"{x:.2f}, {y:.2f}",
+        "–" if x is None else f"{x:z.2f}, {y:z.2f}",
     ]
     return [cell.strip().replace("-", "−") for cell in cells]
