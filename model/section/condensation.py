@@ -11,12 +11,13 @@ from coilset.model.section.integration import SUMS
 
 # A change of the warping, a strain, that ends the iteration. Its effect on the resultants is added to them, so that
 # their error is its square over the strain at which the law's slope changes, some 1e-3.
-TOLERANCE = 1e-10
+TOLERANCE = 1e-9
 MAX_ITERATIONS = 40
 SHORTEST = 1e-3  # part of a correction
 # A correction below which the stiffness is kept for those that follow, and for the section tangent: it changes by the
 # correction over the strain at which the law's slope changes, two per cent at most. And how fast they must fall.
-NEAR, FASTER = 2e-5, 0.1
+NEAR, FASTER = 2e-5, 0.3
+ROUNDING = 1e-13  # of moduli
 WIDTH = 16  # rows are filled up with zeros to a multiple of it, so that all of a row is added in whole vectors
 
 # Of all sections: each one's number of its geometry, shape (cells, sections); by that number radius, curvature and
@@ -25,10 +26,10 @@ WIDTH = 16  # rows are filled up with zeros to a multiple of it, so that all of 
 Tables = namedtuple("Tables", "number wire which y z f w")
 # A section's geometry: its number, strain operator, the volumes g dA of its points, elastic stiffness; Hooke's law.
 Operator = namedtuple("Operator", "number B dA stiffness hooke")
-# Work space: increments of section strains and warping; strains of the points, tangents of the law, and iterations
-# there; of one point, what its tangent loses, and this times B; stiffness and forces of strains and warping; factors of
-# D_aa, and D_aa⁻¹ D_ae; which rows were exchanged; number of the geometry whose elastic stiffness this is, or −1; the
-# change of the warping.
+# Work space: increments of section strains and warping; strains of the points, tangents of the law, and whether they
+# differ from Hooke's; of one point, by how much, and this times B; stiffness and forces of strains and warping; factors
+# of D_aa, and D_aa⁻¹ D_ae; which rows were exchanged; number of the geometry whose elastic stiffness this is, or −1;
+# the change of the warping.
 Work = namedtuple("Work", "step strain C flow loss lost K r X rows kept change")
 
 
@@ -80,7 +81,7 @@ def work_space(points: int, n: int) -> Work:
     size, width = 6 + n, (6 + n + WIDTH - 1) // WIDTH * WIDTH
     return Work(
         np.zeros(width),
-        np.empty((6, points)),
+        np.empty((points, 6)),
         np.empty((points, 6, 6)),
         np.empty(points, np.int64),
         np.empty((6, 6)),
@@ -167,7 +168,7 @@ def strains(B: np.ndarray, w: Work) -> None:
             value = 0.0
             for j in range(len(step)):
                 value += B[k, i, j] * step[j]
-            strain[i, k] = value
+            strain[k, i] = value
 
 
 @njit(**KERNEL)
@@ -189,11 +190,14 @@ def forces(p: np.ndarray, of: Operator, old: np.ndarray, new: np.ndarray, w: Wor
 
 @njit(**KERNEL)
 def stiffness(of: Operator, w: Work) -> bool:
-    """K = ∫ Bᵀ C B g dA: the elastic one without what points that flow lose, with its factors.
+    """K = ∫ Bᵀ C B g dA: the elastic one, and what the tangents of points differ from Hooke's, with its factors.
 
     The elastic one is kept for sections of the same geometry that follow. False if D_aa is singular.
     """
-    flows = w.flow.any()
+    flows = False
+    for k in range(len(of.dA)):
+        w.flow[k] = _differs(w.C[k], of.hooke)
+        flows = flows or w.flow[k] != 0
     if not flows and w.kept[0] == of.number:
         return True
     w.kept[0] = -1 if flows else of.number
@@ -205,6 +209,13 @@ def stiffness(of: Operator, w: Work) -> bool:
                     w.loss[i, j] = of.dA[k] * (w.C[k, i, j] - of.hooke[i, j])
             add_stiffness(of.B[k], w.loss, w.lost, w.K)
     return factorise(w)
+
+
+@njit(**KERNEL)
+def _differs(C: np.ndarray, hooke: np.ndarray) -> int:
+    """Whether a tangent is another than Hooke's, by one modulus across and one in shear."""
+    across, shear = abs(C[0, 0] - hooke[0, 0]), abs(C[3, 3] - hooke[3, 3])
+    return 1 if across > ROUNDING * hooke[0, 0] or shear > ROUNDING * hooke[3, 3] else 0
 
 
 @njit(**KERNEL)

@@ -7,7 +7,7 @@ import numpy as np
 
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.choice import solid_point
+from coilset.model.material.point.choice import solid_points
 from coilset.model.runtime.kernels import njit
 from coilset.model.solid.kinematics import push_forward, stretches
 
@@ -25,10 +25,7 @@ def update_points(p: Any, old: np.ndarray, strain: np.ndarray, new: np.ndarray, 
     Returns:
         0, or -1 if the law found no solution at some point.
     """
-    for i in range(len(strain)):
-        if solid_point(p, old[i], strain[i], new[i], C[i]) < 0:
-            return -1
-    return 0
+    return 0 if solid_points(p, old, strain, new, C, np.empty(len(strain), np.int64)) else -1
 
 
 class MaterialPoints:

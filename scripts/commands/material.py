@@ -191,12 +191,13 @@ def creep(
     from rich.table import Table
 
     from coilset.model.material import library
+    from coilset.model.material.creep.forms import FORMS
     from coilset.model.material.identification.creep_figure import creep_figure
     from coilset.model.material.identification.creep_fit import UNITS, fit_creep
     from coilset.scripts.terminal.console import Console
 
     for value, known, option in (
-        (form, ("norton_bailey", "garofalo"), "--form"),
+        (form, tuple(FORMS), "--form"),
         (hardening, ("strain", "time"), "--hardening"),
     ):
         if value not in known:

@@ -2,9 +2,9 @@
 
 The equivalent creep strain c grows under the equivalent stress σ (von Mises), in the direction of the stress deviator,
 
-    c = φ(σ) t^p,   φ = c₀ (σ/σ₀)^N  (Norton-Bailey)   or   c₀ sinh(σ/σ₀)^N  (Garofalo's form),
+    c = φ(σ) t^p,   φ = c₀ f(σ/σ₀)^N,
 
-with t in hours, scaled with temperature, see `creep.law`. When the stress changes, strain hardening uses the rate at
+by one of the `forms` f, with t in hours, scaled with temperature, see `creep.law`. When the stress changes, strain hardening uses the rate at
 the current c, time hardening the rate at the current t. Both become smooth rates in other variables,
 
     strain hardening   u = c^(1/p),   du/dt = φ^(1/p)          time hardening   u = c,   du/d(t^p) = φ,
@@ -14,12 +14,15 @@ so that c(t) is exact under constant stress, even from t = 0, where dc/dt is inf
 
 import math
 from collections import namedtuple
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
+from coilset.model.material.creep.forms import FORMS
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
-# The array of creep. TIME: the increment of t, or of t^p for time hardening; POWER: p, or 1; FORM: 0 power law, 1 sinh;
+# The array of creep. TIME: the increment of t, or of t^p for time hardening; POWER: p, or 1; FORM: number in FORMS;
 # SPEED, STRESS, EXPONENT: c₀^(1/POWER), σ₀ in N/mm² and N/POWER of φ^(1/POWER); TEMPERATURE: at the increment's end, K.
 # ENERGY: Q/R in K where each point has a temperature of its own, which stays during the increment, and TIME is hours,
 # not yet scaled; else SCALED. T0: of the constants, K.
@@ -29,6 +32,19 @@ MAX_ITERATIONS = 60
 TOLERANCE = 1e-11  # of the creep strain's last correction, over the strain
 FINE = 1e-6  # of log χ; after a correction by Newton's method of this size the next one would be of its square
 MOST = 1e60  # χ c at the start, where the creep strain of the elastic stress is beyond all numbers
+UNKEPT = {option: value for option, value in INLINE.items() if option != "cache"}  # with its caller instead
+
+
+def _compiled(number: int, forms: list[Any]) -> Callable[[float, float], tuple[float, float]]:
+    """`factor` of the form with a number, from this one on."""
+    this = njit(**UNKEPT)(forms[number].factor)
+    if number == len(forms) - 1:
+        return njit(**UNKEPT)(lambda form, x: this(x))
+    others = _compiled(number + 1, forms)
+    return njit(**UNKEPT)(lambda form, x: this(x) if form == number else others(form, x))
+
+
+factor = _compiled(0, [*FORMS.values()])
 
 
 @njit(**KERNEL)
@@ -45,11 +61,9 @@ def rate(q: np.ndarray, stress: float) -> tuple[float, float]:
     x = stress / q[STRESS]
     if x <= 1e-12:
         return 0.0, 0.0
-    if q[FORM] == 0.0:
-        g = q[SPEED] * x ** q[EXPONENT]
-        return g, g * q[EXPONENT] / stress
-    g = q[SPEED] * math.sinh(x) ** q[EXPONENT]
-    return g, g * q[EXPONENT] / (math.tanh(x) * q[STRESS])
+    f, slope = factor(q[FORM], x)
+    g = q[SPEED] * f ** q[EXPONENT]
+    return g, g * (q[EXPONENT] * slope) / stress
 
 
 # Equivalent creep strain of a stage and its derivatives in σ, in u at its start and in the logarithm of its time; u at

@@ -8,11 +8,10 @@ hours at the temperature T₀ of the constants. Where plastic work heats the poi
 own temperature, which changes between the steps (`rod/heat.py`); by time hardening t^p, as if it had always had it.
 """
 
-import math
-
 import numpy as np
 
 from coilset.model.material.creep.flow import SCALED
+from coilset.model.material.creep.forms import FORMS
 from coilset.model.material.law.file import Creep, RateDependence
 from coilset.model.material.law.functions import RATE
 from coilset.model.material.law.parts import Parts
@@ -68,7 +67,7 @@ class CreepLaw:
         if data.hardening == "time":
             time, energy, power = float(end[WORTH] ** power - start[WORTH] ** power), energy * power, 1.0
         energy = energy if self.own else SCALED
-        form = 0.0 if data.form == "norton_bailey" else 1.0
+        form = [*FORMS].index(data.form)
         speed, exponent = data.strain ** (1.0 / power), data.exponent / power
         viscous = np.array(
             [time, power, form, speed, data.stress, exponent, end[TEMPERATURE], energy, data.temperature]
@@ -80,11 +79,10 @@ class CreepLaw:
 
     def strain(self, stress: float, hours: float, temperature: float) -> float:
         """Equivalent creep strain after some hours of constant stress (N/mm²) and temperature (K)."""
-        x = stress / self.data.stress
-        x = x if self.data.form == "norton_bailey" else math.sinh(x)
+        factor, _ = FORMS[self.data.form].factor(stress / self.data.stress)
         return float(
             self.data.strain
-            * x**self.data.exponent
+            * factor**self.data.exponent
             * self.worth(hours, temperature, temperature) ** self.data.time_exponent
         )
 
@@ -107,7 +105,7 @@ class CreepLaw:
     def _stress_exponent(self, stress: float) -> float:
         """Slope of the logarithm of the creep rate over that of the equivalent stress, N/mm²."""
         data, x = self.data, stress / self.data.stress
-        steeper = 1.0 if data.form == "norton_bailey" or x == 0.0 else x / math.tanh(x)
+        steeper = FORMS[data.form].factor(x)[1] if x > 0.0 else 1.0
         return data.exponent / (1.0 if data.hardening == "time" else data.time_exponent) * steeper
 
 

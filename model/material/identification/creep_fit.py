@@ -1,9 +1,9 @@
 """Fit of the constants of creep to relaxation tests, with their uncertainty.
 
-Least squares of the losses over log c₀, N, p, Q (and log σ₀ of Garofalo's form), with c₀ at the tests' mean stress and
-temperature, so that the constants are nearly independent of each other. All readings count alike. The covariance is
-s² (JᵀJ)⁻¹ with s² of the residuals; the interval of each constant holds it with 95 % confidence (Student's t).
-Readings of one specimen that err together make the intervals too narrow.
+Least squares of the losses over log c₀, N, p, Q (and log σ₀, unless the form is a power), with c₀ at the tests' mean
+stress and temperature, so that the constants are nearly independent of each other. All readings count alike. The
+covariance is s² (JᵀJ)⁻¹ with s² of the residuals; the interval of each constant holds it with 95 % confidence
+(Student's t). Readings of one specimen that err together make the intervals too narrow.
 
 A catalogue prints few points, all after the same time. Then p is given, not fitted, and s is the error with which a
 point can be read off, unless the residuals are larger than it allows (χ², 95 %).
@@ -17,6 +17,7 @@ from scipy.stats import chi2, norm
 from scipy.stats import t as student
 
 from coilset.model.base.errors import InputError, SolveError
+from coilset.model.material.creep.forms import FORMS
 from coilset.model.material.identification.relaxation_tests import Readings
 from coilset.model.material.identification.relaxing import loss
 from coilset.model.material.law.file import MaterialFile
@@ -95,7 +96,7 @@ class _Problem:
 
     @property
     def names(self) -> tuple[str, ...]:
-        known = {"log_stress"} if self.form != "garofalo" else set()
+        known = {"log_stress"} if FORMS[self.form].HOMOGENEOUS else set()
         known |= {"time_exponent"} if self.time_exponent is not None else set()
         return tuple(name for name in BOUNDS if name not in known)
 
@@ -106,8 +107,8 @@ class _Problem:
             values["time_exponent"] = self.time_exponent
         stress = self.stress if "log_stress" not in values else float(np.exp(values.pop("log_stress")))
         found = {"strain": float(np.exp(values.pop("log_strain"))), "stress": stress, **values}
-        if self.form == "garofalo":  # log_strain is that at the mean stress
-            found["strain"] /= np.sinh(self.stress / stress) ** found["exponent"]
+        if not FORMS[self.form].HOMOGENEOUS:  # log_strain is that at the mean stress
+            found["strain"] /= FORMS[self.form].factor(self.stress / stress)[0] ** found["exponent"]
         return found | {"temperature": self.temperature}
 
     def losses(self, x: np.ndarray) -> list[np.ndarray]:

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from coilset.model.material.creep.forms import FORMS
 from coilset.model.material.creep.law import GAS_CONSTANT
 from coilset.model.material.identification.relaxation_tests import Readings
 
@@ -40,8 +41,8 @@ def loss(form: str, hardening: str, constants: Constants, tests: Readings, modul
     time = np.log(tests.hours) - worth
     if hardening == "time":
         time = time * constants["time_exponent"]
-    if form == "norton_bailey":
-        return 100.0 * _by_power_law(hardening, constants, tests, modulus, time)
+    if FORMS[form].HOMOGENEOUS:
+        return 100.0 * _by_power_law(form, hardening, constants, tests, modulus, time)
     found = np.empty_like(time)
     for stress, stiffness in {*zip(tests.stress.tolist(), modulus.tolist(), strict=True)}:
         here = (tests.stress == stress) & (modulus == stiffness)
@@ -54,14 +55,14 @@ def loss(form: str, hardening: str, constants: Constants, tests: Readings, modul
 
 
 def _by_power_law(
-    hardening: str, constants: Constants, tests: Readings, modulus: np.ndarray, time: np.ndarray
+    form: str, hardening: str, constants: Constants, tests: Readings, modulus: np.ndarray, time: np.ndarray
 ) -> np.ndarray:
     """x of the load of all readings."""
     q = constants["time_exponent"] if hardening == "strain" else 1.0
-    curve = _fibre("norton_bailey", hardening, {**constants, "strain": 1.0, "stress": 1.0}, 1.0, 1.0)
+    curve = _fibre(form, hardening, {**constants, "strain": 1.0, "stress": 1.0}, 1.0, 1.0)
     radii, weights = (np.ones(1), np.ones(1)) if tests.kind == "tension" else (RADII, 4.0 * RADIAL * RADII**3)
     stress = np.outer(radii, tests.stress) * (1.0 if tests.kind == "tension" else np.sqrt(3.0))
-    shift = (np.log(stress / modulus) - _log_rate("norton_bailey", constants, stress)) / q
+    shift = (np.log(stress / modulus) - _log_rate(form, constants, stress)) / q
     return weights @ curve(time - shift)
 
 
@@ -97,5 +98,4 @@ def _log_rate(form: str, constants: Constants, stress: np.ndarray) -> np.ndarray
     """log φ."""
     x = stress / constants["stress"]
     with np.errstate(divide="ignore"):
-        logarithm = np.log(x) if form == "norton_bailey" else x + np.log(-np.expm1(-2.0 * x)) - np.log(2.0)
-    return np.log(constants["strain"]) + constants["exponent"] * logarithm
+        return np.log(constants["strain"]) + constants["exponent"] * FORMS[form].logarithm(x)

@@ -6,16 +6,21 @@ A material file gives, for one or more temperatures, the elastic constants and t
 import math
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag
 
 from coilset.model.base.entry import Strict, check_entries
 from coilset.model.base.yaml import read_data
+from coilset.model.material.creep.forms import FORMS
 from coilset.model.material.law.hardening_curves import RambergOsgood, Swift, Table, Voce
 
 Text = Annotated[str, Field(min_length=1)]
+if TYPE_CHECKING:
+    Form = str
+else:
+    Form = Literal[tuple(FORMS)]
 NONE = "its constants, or 'none' if the material lacks this function"
 
 
@@ -161,11 +166,11 @@ class CreepTests(Strict):
 
 
 class Creep(Strict):
-    """Creep: c = strain · (σ/stress)^exponent · (t/1 h)^time_exponent, or with sinh(σ/stress); equivalent values."""
+    """Creep: c = strain · f(σ/stress)^exponent · (t/1 h)^time_exponent, equivalent values; f by the form."""
 
     form: Annotated[
-        Literal["norton_bailey", "garofalo"],
-        Field(description="norton_bailey: a power of the stress; garofalo: a power of its hyperbolic sine"),
+        Form,
+        Field(description="; ".join(f"{name}: {form.TEXT}" for name, form in FORMS.items())),
     ]
     strain: Annotated[
         float,

@@ -16,7 +16,7 @@ from coilset.model.material.creep.flow import TIME
 from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.functions import SPIN
 from coilset.model.material.law.parts import OwnPoints, Parts
-from coilset.model.material.point import rod, rod_rows, solid, solid_rows
+from coilset.model.material.point import rod, rod_rows, solid_rows
 from coilset.model.material.point.back_stresses import applies, flow_of_rod
 from coilset.model.material.point.increment import advance
 from coilset.model.runtime.kernels import KERNEL, njit
@@ -32,11 +32,6 @@ def rod_points(
     count: np.ndarray,
 ) -> bool:
     """One increment of the rod's law at many points, as `rod_rows.return_map_points`, or with another law."""
-    raise NotImplementedError("only compiled loops call it")
-
-
-def solid_point(law: Any, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
-    """One increment of the law for the full stress state, as in `solid.return_map`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
 
 
@@ -113,11 +108,12 @@ def advance_points(
     return rod_points(law, old, strain, new, tangent, with_tangent, count)
 
 
-@overload(solid_point, strict=False, inline="always")
-def _solid_point(law: Any, old: Any, dD: Any, new: Any, C: Any) -> Callable[..., int]:
-    if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, dD, new, C: solid.return_map(law, old, dD, new, C)
-    return lambda law, old, dD, new, C: advance(law, old, dD, new, C)
+@njit(**KERNEL)
+def advance_solids(
+    law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
+) -> bool:
+    """`solid_points` from Python."""
+    return solid_points(law, old, de, new, C, count)
 
 
 @overload(solid_points, strict=False)
@@ -131,13 +127,11 @@ def _solid_points(law: Any, old: Any, de: Any, new: Any, C: Any, count: Any) -> 
 def solids_one_by_one(
     law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
 ) -> bool:
-    """One increment at many points, one after the other; counts are at least 1, as every tangent is written."""
-    good, step = True, np.empty(6)
+    """One increment at many points, one after the other."""
+    good = True
     for k in range(old.shape[0]):
-        step[:] = de[:, k]
-        count[k] = advance(law, old[k], step, new[k], C[k])
+        count[k] = advance(law, old[k], de[k], new[k], C[k])
         good = good and count[k] >= 0
-        count[k] = max(count[k], 1) if count[k] >= 0 else count[k]
     return good
 
 

@@ -1,24 +1,13 @@
 """The law over arrays of points from Python, without a mesh: one interface to both forms."""
 
-from typing import Any
-
 import numpy as np
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.material.law.functions import CHANGE
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.parts import Parts
-from coilset.model.material.point.choice import advance_points, solid_point
+from coilset.model.material.point.choice import advance_points, advance_solids
 from coilset.model.material.point.local import TOO_HOT
-from coilset.model.runtime.kernels import KERNEL, njit
-
-
-@njit(**KERNEL)
-def _solid(
-    law: Any, state: np.ndarray, increments: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
-) -> None:
-    for i in range(state.shape[0]):
-        count[i] = solid_point(law, state[i], increments[i], new[i], tangent[i])
 
 
 def initial_state(law: Law, points: int, components: int = 3, temperature: float | None = None) -> np.ndarray:
@@ -96,7 +85,7 @@ def _advance(
         advance_points(point_law, state, increments.T.copy(), new, rows, True, count)
         return new, rows.T.reshape(points, 3, 3), count
     tangent = np.empty((points, components, components))
-    _solid(point_law, state, increments, new, tangent, count)
+    advance_solids(point_law, state, increments, new, tangent, count)
     return new, tangent, count
 
 

@@ -56,11 +56,10 @@ def return_map_points(
     Args:
         p: parameter array of the law.
         old: states at the start, shape (points, 13 or 14); not written.
-        de: strain increments, engineering shear strains, shape (6, points).
+        de: strain increments, engineering shear strains, shape (points, 6).
         new: states at the end; written.
-        C: dσ/dε, shape (points, 6, 6), N/mm²; written where the count is not 0.
-        count: local iterations of each point as `solid.return_map` gives them, shape (points,); written. At least 1
-            where points have temperatures, and elastic constants, of their own.
+        C: dσ/dε, shape (points, 6, 6), N/mm²; written.
+        count: local iterations of each point as `solid.return_map` gives them, shape (points,); written.
 
     Returns:
         Whether the law found a solution at all points.
@@ -70,13 +69,14 @@ def return_map_points(
         for k in range(points):
             count[k] = one_point(p, old, de, k, new, C)
             good = good and count[k] >= 0
-            count[k] = max(count[k], 1) if count[k] >= 0 else count[k]
         return good
     E, G, _ = elasticity(p, 0.0)
     w, place = np.empty((ROWS, GROUP)), np.empty(GROUP, np.uint64)  # without sign, which numba would test
     for first in range(0, points, GROUP):
         size = min(GROUP, points - first)
         _trial(p, old, de, first, size, w, new)
+        for k in range(first, first + size):
+            hooke(E, G, C[k])
         flow, whole = gather(size, GIVEN, place, w)
         count[first : first + size] = 0
         if flow == 0:
@@ -88,7 +88,7 @@ def return_map_points(
             k = first + int(place[j])
             count[k] = iterations
             if w[ENDED, j] == CONVERGED:
-                _write(E, G, w, j, new[k], C[k])
+                _write(G, w, j, new[k], C[k])
                 continue
             count[k] = one_point(p, old, de, k, new, C)
             good = good and count[k] >= 0
@@ -98,7 +98,7 @@ def return_map_points(
 @njit(**KERNEL)
 def one_point(p: np.ndarray, old: np.ndarray, de: np.ndarray, k: int, new: np.ndarray, C: np.ndarray) -> int:
     """`return_map` at the point k; arguments as in `return_map_points`."""
-    return return_map(p, old[k], de[:, k], new[k], C[k])
+    return return_map(p, old[k], de[k], new[k], C[k])
 
 
 @njit(**INLINE)
@@ -123,7 +123,7 @@ def _trial(
             w[STRESS + i, k] = old[first + k, i]
         w[WORK, k] = old[first + k, STATE - 1]
         for i in range(6):
-            w[STRAIN + i, k] = de[i, first + k]
+            w[STRAIN + i, k] = de[first + k, i]
     harden(p, size, WORK, K2, w)
     for k in range(size):
         trial, B = elastic(_six(w, STRESS, k), _six(w, STRAIN, k), E, G), _six(w, BACK, k)
@@ -167,11 +167,10 @@ def _end(E: float, G: float, size: int, w: np.ndarray) -> None:
 
 
 @njit(**INLINE)
-def _write(E: float, G: float, w: np.ndarray, j: int, new: np.ndarray, C: np.ndarray) -> None:
-    """Write state and tangent of a point that flows."""
+def _write(G: float, w: np.ndarray, j: int, new: np.ndarray, C: np.ndarray) -> None:
+    """Write the state of a point that flows, and take off its tangent what it loses."""
     for i in range(STATE - 1):
         new[i] = w[STRESS + i, j]
     new[STATE - 1] = w[WORK, j]
-    hooke(E, G, C)
     taken = Loss(w[LOSS, j], w[LOSS + 1, j], w[LOSS + 2, j], w[LOSS + 3, j], w[LOSS + 4, j])
     soften(taken, _six(w, NORMAL, j), elastic_deviator(_six(w, STRAIN, j), G), C)
