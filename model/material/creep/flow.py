@@ -4,8 +4,9 @@ The equivalent creep strain c grows under the equivalent stress σ (von Mises), 
 
     c = φ(σ) t^p,   φ = c₀ f(σ/σ₀)^N,
 
-by one of the `forms` f, with t in hours, scaled with temperature, see `creep.law`. When the stress changes, strain hardening uses the rate at
-the current c, time hardening the rate at the current t. Both become smooth rates in other variables,
+by one of the `forms` f, with t in hours, scaled with temperature, see `creep.law`. When the stress changes, strain
+hardening uses the rate at the current c, time hardening the rate at the current t. Both become smooth rates in other
+variables,
 
     strain hardening   u = c^(1/p),   du/dt = φ^(1/p)          time hardening   u = c,   du/d(t^p) = φ,
 
