@@ -9,16 +9,14 @@ from coilset.model.material.point.choice import solid_points
 from coilset.model.runtime.kernels import KERNEL, njit
 from coilset.model.section.integration import SUMS
 
-# A change of the warping, a strain, that ends the iteration: stresses are exact to 0.002 MPa. Its effect on the
-# resultants is added to them, so that their error is its square over the strain at which the law's slope changes, some
-# 1e-4.
-TOLERANCE = 1e-8
+# A change of the warping, a strain, that ends the iteration. Its effect on the resultants is added to them, so that
+# their error is the next change, which must be below REST: more disturbs the rod's iteration.
+TOLERANCE, REST = 1e-9, 1e-12
 MAX_ITERATIONS = 40
 SHORTEST = 1e-3  # part of a correction
 # A correction below which the stiffness is kept for those that follow, and for the section tangent: it changes by the
-# correction over that strain, one per cent at most; with 2e-5 a spring needed a third more evaluations. And how fast
-# corrections must fall.
-NEAR, FASTER = 1e-6, 0.3
+# correction over the strain at which the law's slope changes, 1e-5 and more. And how fast corrections must fall.
+NEAR, FASTER = 1e-7, 0.1
 ROUNDING = 1e-13  # of moduli
 WIDTH = 16  # rows are filled up with zeros to a multiple of it, so that all of a row is added in whole vectors
 
@@ -153,7 +151,7 @@ def find_warping(
             before += w.change[i] * w.r[6 + i]
         if not math.isfinite(largest):
             return False
-        if largest <= TOLERANCE:
+        if largest <= TOLERANCE and largest * largest <= REST * last:
             return True
         for i in range(n):
             a[i] -= w.change[i]
