@@ -181,11 +181,14 @@ class SliceProblem:
         """The linear response with the last moduli, unless the load reverses; then the last equilibrium."""
         iteration, system = self.newton.iteration, self.system
         system.expire_at_equilibrium()
+        if self.program.stage.hours:  # what is out of balance after this time then drives the step
+            system.evaluate(self._layout.vector())
         system.last_tangent(load, iteration.matrix)
         start, forces = self._layout.vector(), self._layout.vector()
         values = forces.getArray()
+        values[:] = -system.state["reactions"].trial
+        values[load.loaded] += load.forces
         values[load.held] = load.increments
-        values[load.loaded] = load.forces - system.state["reactions"].equilibrium[load.loaded]
         ksp = iteration.snes.getKSP()
         ksp.setOperators(iteration.matrix.mat)
         ksp.solve(forces, start)
