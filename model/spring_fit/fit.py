@@ -38,6 +38,10 @@ POSSIBLE = {
     **dict.fromkeys(("share", "friction"), (0.0, 1.0)),
 }
 LEAST_G = 1000.0  # MPa, below which it was given in GPa
+COILED = (
+    "all of a coiled wire has hardened before it is pressed: yield stress, rise, rate and share compensate for each "
+    "other and may lie outside of their intervals; give some by --known"
+)
 UNLIKE = "the law does not follow the readings"
 TESTED = Errors()
 MISFIT = 1.5  # residuals over the tester's errors, from which on the law does not follow the readings
@@ -86,7 +90,7 @@ class SpringFit:
         told = [f"95 % intervals: {', '.join(found)}", f"rms residual {self.scatter:.2g} of the tester's errors"]
         if self.doubtful:
             told.append(f"not determined: {', '.join(self.doubtful)}")
-        return told + [self.misfit] * bool(self.misfit)
+        return told + [one for one in (self.misfit, self.caution) if one]
 
     def material(self, name: str) -> dict[str, Any]:
         """Content of a material file."""
@@ -116,6 +120,11 @@ class SpringFit:
         if self.following > CORRELATED:
             return f"the residuals follow each other (correlation {self.following:.2g}), they are no scatter: {UNLIKE}"
         return ""
+
+    @property
+    def caution(self) -> str:
+        """What the intervals leave out, in a sentence; empty if nothing."""
+        return COILED if any(one.coiled for one in self.model.pressings) else ""
 
 
 def fit_springs(
@@ -241,8 +250,8 @@ def _settled(model: Model, x: np.ndarray) -> tuple[Model, np.ndarray, OptimizeRe
         model = model.shifted(x, number > 1)
         before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x)
         small = SETTLED * max(_scatter(model, found), 1.0) ** 2
-        # whole rods come no nearer: below a threshold no share changes them
-        if before - 2.0 * found.cost < small or (model.threshold is not None and nearest - before < small):
+        # whole rods come no nearer: below a threshold no share changes them, and in coiled wire other constants follow
+        if before - 2.0 * found.cost < small or (model.share is not None and nearest - before < small):
             return model, x, found, number
         nearest = min(nearest, before)
     raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")

@@ -72,8 +72,8 @@ def fit_springs(
         rows.add_row(constant, *("-" if value != value else f"{value:.2f}" for value in row))
     console.print(rows)
     console.print(f"rms residual {found.scatter:.3g} of the tester's errors, {found.model.readings} readings")
-    if found.misfit:
-        console.warn(found.misfit)
+    for warning in filter(None, (found.misfit, found.caution)):
+        console.warn(warning)
     for sentence in words(next_press(found), found.doubtful):
         console.print(sentence, soft_wrap=True)
     write_material(file, found.material(name), console)
