@@ -365,7 +365,7 @@ def solve(
     >>> case = Case.read("examples/ck15_presetting.yaml")
     >>> result = solve(case)
     >>> print(f"set {result.set:.2f} mm of {result.summary['free_length_before_mm']:.0f} mm")
-    set 13.30 mm of 35 mm
+    set 13.29 mm of 35 mm
     """
     comm = MPI.COMM_WORLD if comm is None else comm
     first = Analysis(case._case, comm, threads=threads or usual(comm.size), law=law, contacts=contacts, steps=steps)
