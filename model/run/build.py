@@ -32,7 +32,7 @@ from coilset.model.rod.elements import ELEMENTS
 from coilset.model.rod.heat import WireHeat, heat_constants
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.triads import chord_triads
-from coilset.model.run.coarse_mesh import coarse_mesh_warnings
+from coilset.model.run.contact_fineness import coarse_mesh_warnings
 from coilset.model.run.effort import Effort, machine_memory
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.outlined_section import Outlined

@@ -78,7 +78,7 @@ def press(file: str, steps: int | str) -> Press:
     before, block = [step for step in result.steps if step.phase == 0][-2:]
     rate = (block.force_N - before.force_N) / (block.travel_mm - before.travel_mm)
     summary = summarise(analysis.setup, result)
-    told = block.steps_force_error_N, summary["estimated_set_error_mm"]
+    told = block.steps_force_error_N, summary["estimated_errors"]["steps"]["set_mm"]
     return Press((block.force_N, summary["set_mm"]), rate, told, summary["evaluations"], seconds)
 
 
