@@ -113,7 +113,7 @@ def compare(folder: str | Path, results: str | Path, overwrite: bool = False) ->
 
 @dataclass(frozen=True)
 class _Run:
-    """What a comparison asks of a run.
+    """What a comparison reads of a run.
 
     Attributes:
         summary: its numbers.

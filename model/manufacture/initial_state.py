@@ -1,10 +1,10 @@
 """The past of a rod's wire: coiled, relieved or peened, it is not free of stress before its first load."""
 
-import pickle
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -185,10 +185,26 @@ def _cold(parameters: np.ndarray) -> np.ndarray:
     return found
 
 
+@dataclass(frozen=True)
+class _Bend:
+    """Arguments of `coil`, equal to others of the same content."""
+
+    content: Hashable
+    arguments: tuple[Any, ...] = field(compare=False)
+
+
+def _content(argument: Any) -> Hashable:
+    if isinstance(argument, np.ndarray):
+        return argument.shape, argument.tobytes()
+    if isinstance(argument, DiskRule):
+        return argument.name, _content(argument.points), _content(argument.weights)
+    return tuple(map(_content, argument)) if isinstance(argument, tuple) else argument
+
+
 @lru_cache(maxsize=256)
-def _coiled(arguments: bytes) -> Coiled:
-    """`coil` of pickled arguments; kept, as a spring that is pressed again has the same sections."""
-    return coil(*pickle.loads(arguments))
+def _coiled(bend: _Bend) -> Coiled:
+    """`coil`, kept: a spring that is pressed again has the same sections."""
+    return coil(*bend.arguments)
 
 
 def _through(
@@ -215,7 +231,7 @@ def _through(
             if guess is not None:  # as the last one, turned by as much more as this one is
                 guess = guess[0] + curvature - wires[first][k - 1, 1], guess[1] + torsion - wires[first][k - 1, 2]
             bend = past.law, rule, radius, curvature, torsion, states, sections.curved, guess, past.relief, rim
-            coiled = _coiled(pickle.dumps(bend))
+            coiled = _coiled(_Bend(_content(bend), bend))
             guess, states = coiled.turned, np.concatenate([coiled.points, coiled.surface])
             tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
         if past.layer is not None:

@@ -46,7 +46,7 @@ from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 
-DECIMALS = 12  # of κ r and τ r, to which sections of the same geometry are told by their numbers
+DECIMALS = 12  # of κ r and τ r, to which sections of one geometry agree
 
 
 class WarpingSections:

@@ -155,6 +155,13 @@ def start_of(ca: float, cc: float, w: np.ndarray, j: int) -> Start:
 
 
 @njit(**INLINE)
+def keep_start(start: Start, w: np.ndarray, j: int) -> None:
+    """Write what `start_of` reads, but b*."""
+    w[PRODUCTS, j], w[PRODUCTS + 1, j] = start.na, start.ea
+    w[PRODUCTS + 2, j], w[PRODUCTS + 3, j], w[PRODUCTS + 4, j] = start.nn, start.ne, start.ee
+
+
+@njit(**INLINE)
 def _estimate(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> None:
     """Where Newton's method starts; points that do not load plastically are left out."""
     for j in range(size):

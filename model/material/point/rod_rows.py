@@ -11,11 +11,11 @@ from coilset.model.material.point.local_rows import (
     FORM,
     GROUP,
     K2,
-    PRODUCTS,
     WORK,
     alone,
     gather,
     harden,
+    keep_start,
     local_of,
     solve_rows,
     start_of,
@@ -164,11 +164,9 @@ def _begin(E: float, G: float, size: int, w: np.ndarray) -> None:
         n = active(_vector(w, STRESS, j), _vector(w, BACK, j))
         e = (E / 1.5 * w[STRAIN, j], G * w[STRAIN + 1, j], G * w[STRAIN + 2, j])
         beginning = begin(w[WORK, j], 0.0, E, G, n, e, w[K2, j])
-        start = beginning.start
         w[BETA, j], w[SLOPE, j] = beginning.beta, beginning.slope
         w[NORMAL, j], w[NORMAL + 1, j], w[NORMAL + 2, j] = beginning.n0[0], beginning.n0[1], beginning.n0[2]
-        w[PRODUCTS, j], w[PRODUCTS + 1, j] = start.na, start.ea
-        w[PRODUCTS + 2, j], w[PRODUCTS + 3, j], w[PRODUCTS + 4, j] = start.nn, start.ne, start.ee
+        keep_start(beginning.start, w, j)
 
 
 @njit(**INLINE)

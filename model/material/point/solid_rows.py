@@ -11,11 +11,11 @@ from coilset.model.material.point.local_rows import (
     FORM,
     GROUP,
     K2,
-    PRODUCTS,
     WORK,
     alone,
     gather,
     harden,
+    keep_start,
     local_of,
     solve_rows,
     start_of,
@@ -142,11 +142,9 @@ def _begin(G: float, size: int, w: np.ndarray) -> None:
     for j in range(size):
         n, e = active(_six(w, STRESS, j), _six(w, BACK, j)), elastic_deviator(_six(w, STRAIN, j), G)
         beginning = begin(w[WORK, j], 0.0, G, n, e, w[K2, j])
-        start = beginning.start
         w[BETA, j] = beginning.beta
         _set(beginning.n0, w, NORMAL, j)
-        w[PRODUCTS, j], w[PRODUCTS + 1, j] = start.na, start.ea
-        w[PRODUCTS + 2, j], w[PRODUCTS + 3, j], w[PRODUCTS + 4, j] = start.nn, start.ne, start.ee
+        keep_start(beginning.start, w, j)
 
 
 @njit(**INLINE)

@@ -8,7 +8,7 @@ wire has flowed before, in another direction, the share of back stress counts fr
 
 The first set, run by itself, had yield stress, rise and share outside: they compensate for each other, and the fit's
 coarser mesh moves them. Of four sets, one may have a constant outside the intervals by chance in five of such series,
-two in one of seventy. The set of a press to 95 % is asked for within 1 %, as of virgin wire.
+two in one of seventy. The set of a press to 95 % must be within 1 %, as of virgin wire.
 """
 
 import numpy as np
