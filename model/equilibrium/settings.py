@@ -72,8 +72,8 @@ class StepControl:
 
     Attributes:
         smallest: size below which the path is abandoned.
-        patience: evaluations after which the program has stalled unless they have brought a thousandth of the phase, or
-            a regular step.
+        patience: evaluations in vain, of attempts without an equilibrium, after which the program is given up unless it
+            has advanced by a hundredth of the phase, or by a regular step.
         automatic: number of regular steps in an automatic phase; it starts with one of these.
         easy: number of iterations up to which the next automatic step becomes longer.
         hard: number of iterations from which the next automatic step becomes shorter.
@@ -100,7 +100,7 @@ class StepControl:
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
     smallest: Fraction = 2.0**-10
-    patience: Count = 2000
+    patience: Count = 1000
     automatic: Count = 16
     easy: Count = 5
     hard: Count = 10

@@ -12,6 +12,8 @@ from coilset.model.base.errors import SolveError
 from coilset.model.case import read_case
 from coilset.model.equilibrium.newton.newton import Start
 from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.step_sizes import Path, StepSizes
+from coilset.model.equilibrium.settings import StepControl
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 
@@ -113,7 +115,7 @@ def test_a_program_that_no_longer_advances_ends_soon_with_its_cause(make):
         return replace(outcome, converged=False, reason="no reason") if len(steps) == 3 else outcome
 
     analysis.newton.solve = fails_later
-    tried = f"{PATIENCE} states were tried and led less than a thousandth of the way; no reason; "
+    tried = f"more than {PATIENCE} states were tried in vain within a hundredth of the way; no reason; "
     with pytest.raises(SolveError, match=tried + r"the .* gives? way .*; a height of [0-9.]+ mm can be reached$"):
         analysis.run()
     assert PATIENCE < sum(spent) + len(spent) <= PATIENCE + 2 * max(solve.evaluations for solve in solves)
@@ -122,10 +124,24 @@ def test_a_program_that_no_longer_advances_ends_soon_with_its_cause(make):
 
 
 def test_a_program_that_advances_slowly_goes_on(make):
-    """Each regular step is an advance, however many evaluations all of them take."""
-    analysis = make("[{to: block, steps: 20}]", IMPATIENT)
+    """Evaluations that lead to an equilibrium are not in vain, however many they are within a hundredth of the way."""
+    analysis = make("[{to: {travel: 3}, steps: [0.002, 0.004, 0.006, 1]}]", "solver.control.steps.patience=1")
     assert analysis.run().complete
-    assert analysis.system.evaluations > PATIENCE
+    assert sum(step.evaluations for step in analysis.result.steps[:3]) > 3
+
+
+@pytest.mark.parametrize(("regular", "automatic", "advance"), [(16, True, 0.16), (1, False, 0.01), (1000, False, 1.0)])
+def test_what_is_in_vain_counts_until_the_path_has_advanced(regular, automatic, advance):
+    """By a hundredth of it, or by a regular step; a smaller advance between two failures does not make up for them."""
+    patience, path = StepControl().patience, Path(lambda place: None, regular, automatic=automatic)
+    for share, ends in ((0.9, True), (1.1, False)):
+        steps = StepSizes(StepControl())
+        assert not steps.stalls(path, 7)
+        assert not steps.stalls(path, 7 + patience)
+        steps.accept(path, Outcome(True, "", 0.0), share * advance)
+        assert not steps.stalls(path, 7 + patience)
+        assert steps.stalls(path, 8 + patience) is ends
+        assert steps.stalls(path, 8 + 2 * patience)
 
 
 def test_coils_that_sink_in_too_far_are_pressed_apart(make):

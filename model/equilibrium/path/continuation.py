@@ -70,6 +70,7 @@ class Continuation:
         self.next_touch = NextTouch(self.system)
         self._spent: list[Outcome] = []  # all solves of the step in progress
         self._unstable: PETSc.Vec | None = None  # increments of an attempt that ended unstable
+        self._in_vain = 0  # evaluations that found no equilibrium
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
@@ -79,7 +80,10 @@ class Continuation:
         return self._charged(self._attempt(load, starts))
 
     def _attempt(self, load: Load, starts: Iterable[Start], size: float = 0.0, accurately: bool = False) -> Outcome:
-        return self._conclude(load, self._stable(self._solve(load, starts), load), size, accurately)
+        began = self.system.evaluations
+        outcome = self._conclude(load, self._stable(self._solve(load, starts), load), size, accurately)
+        self._in_vain += 0 if outcome.converged else self.system.evaluations - began
+        return outcome
 
     def _newton(self, load: Load, start: Start) -> Outcome:
         self._spent.append(self.newton.solve(load, start))
@@ -224,8 +228,8 @@ class Continuation:
         """
         assert self.stability is not None
         there, load = self._unstable, partial(path.load, place)
-        before = self.system.state.copy()
-        outcome = Snap(self.stability, self.control, partial(self._snap_step, path)).go(load, there)
+        before, began = self.system.state.copy(), self.system.evaluations
+        outcome = Snap(self.stability, self.control, partial(self._snap_step, path, began)).go(load, there)
         if outcome.converged:
             free = f"set {outcome.released:.3g} N mm free" if outcome.released else "set no energy free: its path forks"
             log.info("step %d: the spring left its path and %s", self.number + 1, free)
@@ -233,6 +237,7 @@ class Continuation:
             if self.step_error is not None:
                 self.step_error.restart()
             return outcome
+        self._in_vain += self.system.evaluations - began
         self.system.state.put_back(before)
         self.system.restore()
         log.info("step %d: no stable state beside the path was found", self.number + 1)
@@ -244,8 +249,9 @@ class Continuation:
             outcome = replace(outcome, negative_pivots=self.stability.negative_pivots(load))
         return self._conclude(load, outcome, 0.0)
 
-    def _snap_step(self, path: Path, load: Load, start: Start) -> Outcome:
-        if self.steps.stalls(path, self.system.evaluations):
+    def _snap_step(self, path: Path, began: int, load: Load, start: Start) -> Outcome:
+        """One of a snap, which began after `began` evaluations and was in vain unless it comes to rest."""
+        if self.steps.stalls(path, self._in_vain + self.system.evaluations - began):
             return Outcome(False, "the program stalls", math.inf)
         return self._judged(self._newton(load, start))
 
@@ -276,8 +282,8 @@ class Continuation:
         self._unstable, unstable_at = None, 0.0
         outcome: Outcome | None = None
         while True:
-            if self.steps.stalls(path, self.system.evaluations):
-                tried = f"{self.control.patience} states were tried and led less than a thousandth of the way"
+            if self.steps.stalls(path, self._in_vain):
+                tried = f"more than {self.control.patience} states were tried in vain within a hundredth of the way"
                 raise path.failure(tried, "" if outcome is None else outcome.reason, self.cause())
             begun = self.steps.position
             wanted = self.steps.size(path)

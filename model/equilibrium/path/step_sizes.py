@@ -13,7 +13,7 @@ from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Load
 
 ON_MARK = 1e-9  # of a regular step: what is nearer to a mark is on it
-ADVANCE = 1e-3  # of a path, which `patience` evaluations must bring
+ADVANCE = 1e-2  # of a path, which must be made before `patience` evaluations are in vain
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class StepSizes:
 
     def __init__(self, control: StepControl) -> None:
         self.control, self.position = control, Position()
-        self._mark: tuple[float, int] | None = None  # where the path was last found to advance, and evaluations then
+        self._mark: tuple[float, int] | None = None  # where the path was last found to advance; `in_vain` there
 
     def begin(self) -> None:
         """Stand at the start of a path."""
@@ -110,12 +110,17 @@ class StepSizes:
         mark = max(int(position.done + ON_MARK) + 1, int(position.done + size + ON_MARK))
         return min(size, mark - position.done)
 
-    def stalls(self, path: Path, evaluations: int) -> bool:
-        """Whether `patience` evaluations have hardly advanced the body; `evaluations` of all so far."""
+    def stalls(self, path: Path, in_vain: int) -> bool:
+        """Whether more than `patience` evaluations were in vain while the body hardly advanced.
+
+        Args:
+            path: it.
+            in_vain: evaluations that found no equilibrium, of all so far.
+        """
         done = self.position.done
         if self._mark is None or done - self._mark[0] >= min(1.0, ADVANCE * path.regular) * (1.0 - ON_MARK):
-            self._mark = done, evaluations
-        return evaluations - self._mark[1] > self.control.patience
+            self._mark = done, in_vain
+        return in_vain - self._mark[1] > self.control.patience
 
     def accept(self, path: Path, outcome: Outcome, size: float) -> None:
         """Stand at the end of a step of this size."""
