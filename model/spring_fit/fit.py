@@ -18,7 +18,7 @@ from scipy.optimize import OptimizeResult
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case.case import Case
 from coilset.model.manufacture.initial_state import relief_intervals
-from coilset.model.spring_fit.intervals import Interval, correlation, intervals, minimum
+from coilset.model.spring_fit.intervals import THRESHOLD, Interval, correlation, intervals, limit, minimum
 from coilset.model.spring_fit.laws import CONSTANTS, Form
 from coilset.model.spring_fit.model import TESTER, Errors, Model, names
 from coilset.model.spring_fit.pressing import Pressing
@@ -163,14 +163,19 @@ def fit_springs(
         problem = f"{model.readings} readings cannot determine {len(model.fitted)} constants"
         raise InputError(f"{problem}; give more, or some constants by --known", "--spring")
     if like is not None:
-        old = like.model
-        model = replace(model, missing=old.missing, slopes_missing=old.slopes_missing, weights=old.weights)
+        model = model.like(like.model)
         x, before = minimum(model, like.x)[0], 0
     else:
         model, x, before = _begun(model, law.G)
     model, x, found, rounds = _settled(model, x)
     within = intervals(model, x, found, model.slopes(x))
-    return _result(model, *_central(model, x, found, within), within, before + rounds)
+    at = model.threshold
+    if at is not None:
+        within["share"] = _from_nothing(model, x, found, within["share"], at)
+        if within["share"].undetermined:
+            x[at] = 0.5 * (within["share"].low + within["share"].high)
+            model, x, found = _again(model, x, at)
+    return _result(model, x, found, within, before + rounds)
 
 
 def form_of(case: Case, name: str) -> Form:
@@ -181,16 +186,24 @@ def form_of(case: Case, name: str) -> Form:
     return Form(name, law.nu, temperature, tuple(softening(case, law, temperature)), creep)
 
 
-def _central(
-    model: Model, x: np.ndarray, found: OptimizeResult, within: Mapping[str, Interval]
-) -> tuple[np.ndarray, OptimizeResult]:
-    """The unknowns of least squares, but a share that is not determined in the middle of its interval."""
-    at = model.threshold
-    if at is None or not within["share"].undetermined:
-        return x, found
-    middle = x.copy()
-    middle[at] = 0.5 * (within["share"].low + within["share"].high)
-    return minimum(model, middle, [at])
+def _from_nothing(model: Model, x: np.ndarray, found: OptimizeResult, share: Interval, at: int) -> Interval:
+    """The interval of a share that has a threshold: from 0, unless whole rods without any are too far off.
+
+    What whole rods have more is interpolated between shares; exact at one beyond the threshold, it is not exact at
+    those below, and the share would seem determined.
+    """
+    if share.low == 0.0:
+        return share
+    none = x.copy()
+    none[at] = 0.0
+    _, _, least = _again(model, none, at)
+    return replace(share, low=0.0) if 2.0 * (least.cost - found.cost) < THRESHOLD * limit(model, found) else share
+
+
+def _again(model: Model, x: np.ndarray, held: int) -> tuple[Model, np.ndarray, OptimizeResult]:
+    """Least squares with one unknown held, by whole rods of that."""
+    model = model.shifted(minimum(model, x, [held])[0])
+    return model, *minimum(model, x, [held])
 
 
 def _result(
@@ -230,8 +243,8 @@ def _begun(model: Model, G: float) -> tuple[Model, np.ndarray, int]:
     """
     held = [] if model.threshold is None else [model.threshold]
     x = _first(model, G, held)
-    for slopes in (False,) * (1 + any(one.coiled for one in model.pressings)) + (True,):
-        model = model.corrected(x, slopes)
+    for _ in range(2 + any(one.coiled for one in model.pressings)):
+        model = model.corrected(x)
         x, _ = minimum(model, x, held, fine=False)
     if held:
         model = model.with_shares(x, SHARES)
@@ -242,18 +255,25 @@ def _begun(model: Model, G: float) -> tuple[Model, np.ndarray, int]:
 def _settled(model: Model, x: np.ndarray) -> tuple[Model, np.ndarray, OptimizeResult, int]:
     """Whole rods on the mesh of the case and search in turn, until the constants stay; with the number of rounds.
 
+    They stay where whole rods come no nearer to the readings although their slopes are of this place.
+
     Raises:
         SolveError: if the constants do not come to rest.
     """
-    nearest = math.inf
+    nearest, best, refreshed = math.inf, (model, x, minimum(model, x)[1], 0), False
     for number in range(1, ROUNDS + 1):
-        model = model.shifted(x, number > 1)
-        before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x)
+        model = model.shifted(x)
+        whole, (after, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x)
         small = SETTLED * max(_scatter(model, found), 1.0) ** 2
-        # whole rods come no nearer: below a threshold no share changes them, and in coiled wire other constants follow
-        if before - 2.0 * found.cost < small or (model.share is not None and nearest - before < small):
-            return model, x, found, number
-        nearest = min(nearest, before)
+        settled = min(whole - 2.0 * found.cost, nearest - whole) < small
+        if whole < nearest:
+            nearest, best = whole, (model, after, found, number)
+        if settled and refreshed:
+            return best
+        if settled:
+            model, refreshed = best[0].with_slopes(best[0].missing[0].at), True
+            after = minimum(model, after)[0]
+        x = after
     raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")
 
 

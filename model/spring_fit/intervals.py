@@ -65,6 +65,16 @@ def spread(J: np.ndarray) -> np.ndarray:
     return found
 
 
+def limit(model: Model, found: OptimizeResult) -> float:
+    """s² t²: by how much the sum of squares rises to the end of an interval.
+
+    Args:
+        model: of the fit.
+        found: what `minimum` says of it.
+    """
+    return 2.0 * float(found.cost) / max(model.readings - len(model.fitted), 1) * rise(model)
+
+
 def rise(model: Model) -> float:
     """t²: by how much the sum of squares, over the variance s², rises to the end of an interval."""
     t = student.isf(0.5 * (1.0 - CONFIDENCE) / len(model.fitted), max(model.readings - len(model.fitted), 1))
@@ -80,15 +90,15 @@ def intervals(model: Model, x: np.ndarray, found: OptimizeResult, J: np.ndarray)
         J: slopes there.
     """
     low, high = model.bounds
-    limit = 2.0 * float(found.cost) / max(model.readings - len(model.fitted), 1) * rise(model)
-    widths = math.sqrt(limit) * spread(J)
+    risen = limit(model, found)
+    widths = math.sqrt(risen) * spread(J)
     result = {}
     for k, name in enumerate(model.fitted):
         logarithmic = name in LOGARITHMIC
         ends, open_ = [], False
         for sign in (-1.0, 1.0):
             reach = min(abs((high if sign > 0.0 else low)[k] - x[k]), REACH if logarithmic else math.inf)
-            width, beyond = _end(model, (x, float(found.cost)), J, k, sign * min(float(widths[k]), 1e6), reach, limit)
+            width, beyond = _end(model, (x, float(found.cost)), J, k, sign * min(float(widths[k]), 1e6), reach, risen)
             ends.append(float(x[k] + sign * width))
             open_ |= beyond and logarithmic
         value, least, most = (math.exp(one) if logarithmic else one for one in (float(x[k]), *ends))

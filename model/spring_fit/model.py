@@ -69,7 +69,7 @@ class Model:
         errors: of the tester.
         weights: standard deviation of each reading of each pressing, N, or mm of lengths; infinite if it is not used.
         missing: what the whole rod has more than the uniform one, at several unknowns, in ascending shares.
-        slopes_missing: its derivatives by the unknowns, but not by the share, shape (readings, unknowns).
+        slopes_missing: its derivatives by the unknowns, shape (readings, unknowns); 0 for a share with a threshold.
         work: greatest plastic work per volume of the last whole rods, N/mm².
     """
 
@@ -195,30 +195,34 @@ class Model:
             columns.append((self.residual(moved) - here) / step)
         return np.array(columns).T
 
-    def corrected(self, x: np.ndarray, slopes: bool) -> "Model":
+    def corrected(self, x: np.ndarray) -> "Model":
         """The model with what coarse whole rods of these constants have more, and the weights that follow from them.
-
-        Args:
-            x: unknowns.
-            slopes: whether to run whole rods for the derivatives by the constants, too; else the known ones stay.
 
         Raises:
             SolveError: if a whole rod finds no equilibrium.
         """
-        rods_here, _ = self._whole(x, rods.COARSE)
-        more = self._difference(x, rods_here)
-        known = [one.copy() for one in self.slopes_missing]
-        for k in range(len(self.fitted) if slopes else 0):
+        whole, _ = self._whole(x, rods.COARSE)
+        weights = tuple(self._weights(*pair) for pair in zip(self.pressings, whole, strict=True))
+        return replace(self, missing=(Missing(x.copy(), self._difference(x, whole)),), weights=weights)
+
+    def with_slopes(self, x: np.ndarray) -> "Model":
+        """The model with the derivatives by the unknowns, at these, of what coarse whole rods have more.
+
+        Raises:
+            SolveError: if a whole rod finds no equilibrium.
+        """
+        here = self._difference(x, self._whole(x, rods.COARSE)[0])
+        slopes = tuple(np.zeros_like(one) for one in self.slopes_missing)
+        for k in range(len(x)):
             if k == self.threshold:
                 continue  # it acts beyond a threshold: `with_shares` follows it
             step = self._step(x, k)
             moved = x.copy()
             moved[k] += step
             there = self._difference(moved, self._whole(moved, rods.COARSE)[0])
-            for one, here, after in zip(known, more, there, strict=True):
-                one[:, k] = (after - here) / step
-        weights = tuple(self._weights(*pair) for pair in zip(self.pressings, rods_here, strict=True))
-        return replace(self, missing=(Missing(x.copy(), more),), slopes_missing=tuple(known), weights=weights)
+            for one, before, after in zip(slopes, here, there, strict=True):
+                one[:, k] = (after - before) / step
+        return replace(self, slopes_missing=slopes)
 
     def with_shares(self, x: np.ndarray, shares: Sequence[float]) -> "Model":
         """The model with what coarse whole rods of these shares have more, all at the same other unknowns.
@@ -255,32 +259,33 @@ class Model:
             for one, other, weight in zip(ours, others, self.weights, strict=True)
         )
 
-    def shifted(self, x: np.ndarray, again: bool) -> "Model":
+    def shifted(self, x: np.ndarray) -> "Model":
         """The model that is the whole rod's, on the mesh of the case, at these unknowns.
 
-        What shares have more than others stays; so do the slopes if it does, or if this mesh is new. Else they are
-        those with which this rod would have been predicted from the last one (Broyden's update).
-
-        Args:
-            x: unknowns.
-            again: whether the last rod was of this mesh, too.
+        What shares have more than others stays, and so do the slopes.
 
         Raises:
             SolveError: if the whole rod finds no equilibrium.
         """
         branches, work = self._whole(x, rods.USUAL)
-        now, missing, slopes = self._difference(x, branches), [], self.slopes_missing
-        way = np.where(np.arange(len(x)) < len(self.fitted), x - self.missing[0].at, 0.0)
-        if again and len(self.missing) == 1 and way.any():
-            off = (here - self.lacking(x, k) for k, here in enumerate(now))
-            slopes = tuple(one + np.outer(more, way / (way @ way)) for one, more in zip(slopes, off, strict=True))
+        now, missing = self._difference(x, branches), []
         for one in self.missing:
             at = x.copy()
             if self.share is not None:
                 at[self.share] = one.at[self.share]
             more = tuple(self.lacking(at, k) + here - self.lacking(x, k) for k, here in enumerate(now))
             missing.append(Missing(at, more))
-        return replace(self, missing=tuple(missing), slopes_missing=slopes, work=work)
+        return replace(self, missing=tuple(missing), work=work)
+
+    def like(self, other: "Model") -> "Model":
+        """The model with what whole rods have more in a fit of other springs that were pressed in the same way.
+
+        The travel of a turn is an unknown beside what was read, which is another one here.
+        """
+        ends = [np.array([one.pressings[k].ends[branch] for k, branch in one.turns]) for one in (other, self)]
+        moved = np.append(np.zeros(len(self.fitted)), ends[0] - ends[1])
+        missing = tuple(replace(one, at=one.at + moved) for one in other.missing)
+        return replace(self, missing=missing, slopes_missing=other.slopes_missing, weights=other.weights)
 
     def _whole(self, x: np.ndarray, fine: rods.Steps) -> tuple[list[list[Branch]], float]:
         material = self.form.material(self.values(x), TRIAL)

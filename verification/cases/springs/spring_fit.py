@@ -44,7 +44,6 @@ def spring() -> Case:
         {
             "spring": {**entries, "end_coils": {"form": "closed and ground"}},
             "material": "elastic",
-            "mesh": {"elements_per_turn": 10, "section": {"radial": 4, "angular": 12}},
             "loading": [{"to": "block"}],
         }
     )
