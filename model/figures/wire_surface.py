@@ -101,8 +101,8 @@ def frames(run: Run, most: int | None = None) -> Frames:
     names = [*run.snapshots[1:], "last equilibrium"]
     for k in kept:
         step, phase, travel, force = (float(data[name].values[k]) for name in ("step", "phase", "travel_mm", "force_N"))
-        to, bears = names[min(int(phase), len(names) - 1)], round(force, 6) + 0.0
-        labels.append(f"step {step:g}, to {to}: {plain(travel)} mm of travel, {plain(bears)} N")
+        to, carried = names[min(int(phase), len(names) - 1)], round(force, 6) + 0.0
+        labels.append(f"step {step:g}, to {to}: {plain(travel)} mm of travel, {plain(carried)} N")
     return Frames(tuple(labels), x, shear)
 
 

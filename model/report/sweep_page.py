@@ -209,11 +209,11 @@ def _deciding(data: xr.Dataset, of: str) -> Panel | None:
         },
         "showlegend": False,
     }
-    told = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, correlation, strict=True))
+    pairs = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, correlation, strict=True))
     return Panel(
         "deciding",
         finding,
-        f"{finding}. Rank correlations: {told}.",
+        f"{finding}. Rank correlations: {pairs}.",
         [trace],
         {
             "xaxis": axis("rank correlation", range=[-1.05, 1.05]),

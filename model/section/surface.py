@@ -60,13 +60,13 @@ class Inside:
     sign: float
 
     @classmethod
-    def of(cls, knows_curvature: bool, hand: int) -> "Inside":
+    def of(cls, has_curvature: bool, hand: int) -> "Inside":
         """The inside of a coil of the `hand` +1 or −1.
 
         A section without curvature has its y axis level: in a right-handed coil it points inwards, in a
         left-handed one outwards, and its z axis points upwards. The binormal does so in a right-handed coil only.
         """
-        if knows_curvature:
+        if has_curvature:
             return cls(0.0, -float(hand))
         return cls(0.0 if hand > 0 else math.pi, -1.0)
 

@@ -87,10 +87,10 @@ class SpringFit:
             f"{one.name} {one.low:.4g} to {one.high:.4g} {units.get(one.name, '')}".strip()
             for one in self.intervals.values()
         ]
-        told = [f"95 % intervals: {', '.join(found)}", f"rms residual {self.scatter:.2g} of the tester's errors"]
+        sentences = [f"95 % intervals: {', '.join(found)}", f"rms residual {self.scatter:.2g} of the tester's errors"]
         if self.doubtful:
-            told.append(f"not determined: {', '.join(self.doubtful)}")
-        return told + [one for one in (self.misfit, self.caution) if one]
+            sentences.append(f"not determined: {', '.join(self.doubtful)}")
+        return sentences + [one for one in (self.misfit, self.caution) if one]
 
     def material(self, name: str) -> dict[str, Any]:
         """Content of a material file."""

@@ -1,11 +1,11 @@
-"""Which further press would tell most: a fresh spring of the same kind, pressed to another height and released.
+"""Which further press would determine most: a fresh spring of the same kind, pressed to another height and released.
 
 By the uniform rod: with the slopes J of the residuals of a press that has not been made, the covariance becomes
 (JᵀJ + J₀ᵀJ₀)⁻¹, J₀ of the presses that have been; the travel of its turn is an unknown of its own. The share of
 kinematic hardening changes nothing below a threshold that a press has, so that no slope says how well it is known: if
 it is s, those s' remain whose residuals, with all other unknowns following, differ by less than an interval allows.
 The width of what remains is averaged over the shares s that are possible today. For the other constants the secant to
-the share that is farther away stands in place of its slope.
+the share that is further away stands in place of its slope.
 """
 
 from collections.abc import Sequence
@@ -43,7 +43,7 @@ class Advice:
 
 
 def next_press(fit: SpringFit) -> Advice | None:
-    """The best next press of a spring of the first kind; None where nothing is fitted that it could tell."""
+    """The best next press of a spring of the first kind; None where nothing is fitted that it could determine."""
     model, one = fit.model, fit.model.pressings[0]
     count = len(model.fitted)
     today = _seen(model, fit.x)
@@ -145,16 +145,16 @@ def words(advice: Advice | None, undetermined: Sequence[str]) -> list[str]:
     """Sentences for the terminal."""
     if advice is None:
         return []
-    told = []
+    sentences = []
     if advice.open_:
-        told.append(
+        sentences.append(
             f"no press of this spring would determine {', '.join(advice.open_)}: a torsion test with reversal of the "
             "wire would (coilset material fit --back-stresses)"
         )
     if advice.narrower <= WORTH:
         what = "determine" if advice.name in undetermined else "narrow"
-        told.append(
+        sentences.append(
             f"next: press a fresh spring to {advice.height:.4g} mm; the interval of {advice.name} would become "
             f"{advice.narrower:.2g} times as wide on average, which would {what} it best"
         )
-    return told
+    return sentences

@@ -99,8 +99,8 @@ class StepError:
         share = self._share(0.0, works, first, greatest)
         if math.isnan(share):
             return Estimate(math.nan, math.nan, 0.0, 1.0)
-        told = works[3] / first if self._resolves_time(STILL_FORCE * greatest) else math.nan
-        return Estimate(told, math.nan, share, self._factor(share))
+        error = works[3] / first if self._resolves_time(STILL_FORCE * greatest) else math.nan
+        return Estimate(error, math.nan, share, self._factor(share))
 
     def _resolves_time(self, faint: float) -> bool:
         """Does the error of the step follow from its works? Forces up to `faint`, N, do not fall; collective."""

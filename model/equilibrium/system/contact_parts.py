@@ -82,7 +82,7 @@ class ContactParts:
             contact.iterate()
 
     def forget_iterate(self) -> None:
-        """Forget what the last correction foresees; the next state is another one."""
+        """Forget what the last correction predicts; the next state is another one."""
         for contact in self.contacts:
             contact.forget_iterate()
 

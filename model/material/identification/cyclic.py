@@ -7,10 +7,10 @@ In one direction the law of `coilset.model.material.point.back_stresses` is scal
 
 and over an increment in which εᵖ goes one way, Xᵢ tends to ± Cᵢ/γᵢ as exp(−γᵢ Δp): an increment of any size is followed
 exactly. Torsion is the same with √3 τ, γ/√3 and 3G. The constants σ₀, Q, m, Cᵢ/γᵢ, γᵢ are fitted by least squares, with
-one back stress first and one more at a time. Q is left out if Schwarz's criterion does not ask for it.
+one back stress first and one more at a time. Q is left out if Schwarz's criterion does not require it.
 
-What a test can tell: only flow in both directions separates the yield surface's size from the back stresses; a γᵢ whose
-1/γᵢ is far above the strain of the test leaves only Cᵢ, one far below the spacing of its readings only Cᵢ/γᵢ.
+What a test can determine: only flow in both directions separates the yield surface's size from the back stresses; a
+γᵢ whose 1/γᵢ is far above the strain of the test leaves only Cᵢ, one far below the spacing of its readings only Cᵢ/γᵢ.
 """
 
 import math
@@ -82,7 +82,7 @@ class CyclicFit(Fit):
     """The result of `fit_back_stresses`, with the constants yield_stress, rise, rate, C_1, gamma_1, C_2, ...
 
     Attributes:
-        enough: the number of back stresses that Schwarz's criterion asks for, up to the one that was fitted.
+        enough: the number of back stresses that Schwarz's criterion requires, up to the one that was fitted.
         length: maximum length of the plastic strain in a test.
     """
 
@@ -96,7 +96,7 @@ class CyclicFit(Fit):
 
     @property
     def doubtful(self) -> tuple[str, ...]:
-        """Constants that may as well be half as large, or twice: the tests do not tell them."""
+        """Constants that may as well be half as large, or twice: the tests do not determine them."""
         return tuple(name for name, value in self.constants.items() if not self.uncertainty[name] < 0.5 * value)
 
     def material(self, name: str) -> dict[str, Any]:
@@ -114,7 +114,7 @@ class CyclicFit(Fit):
         terms = [{"C": c[f"C_{i}"], "gamma": c[f"gamma_{i}"]} for i in range(1, self.terms + 1)]
         remark = "Cyclic tests in one direction; as far as they went."
         if self.doubtful:
-            remark += f" They hardly tell {', '.join(self.doubtful)}."
+            remark += f" They hardly determine {', '.join(self.doubtful)}."
         return self.file(name, remark, isotropic, {"law": "chaboche", "terms": terms}, "none")
 
 
@@ -138,7 +138,7 @@ def fit_back_stresses(tests: Iterable[Test], G: float, nu: float, terms: int, te
         temperature: of the tests, K.
 
     Raises:
-        InputError: if the tests cannot tell back stresses, or their number is not possible.
+        InputError: if the tests cannot determine back stresses, or their number is not possible.
         SolveError: if the tests cannot distinguish the constants.
     """
     tests = tuple(tests)

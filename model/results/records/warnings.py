@@ -19,7 +19,7 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 # Change of the force over that of the travel, both in per cent, from which a spring counts as standing on a wall: a
 # spring of constant rate has 1, the example at block 1.1, the cone 160.
 WALL = 20.0
-WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is required
+WALL_FORCE = 0.002  # of the force, for which the warning states the height where no accuracy is required
 LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
 ROUNDING = 1e-3  # by which a limit that is given with few digits may be exceeded
 NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
@@ -45,21 +45,23 @@ def step_warnings(setup: Setup, result: Result) -> list[Warning]:
     return [warning for check in SEEN for warning in check(setup, result)]
 
 
-def accuracy_warning(error: float, asked: float, place: str, of: str = "the force", size: str = "") -> Warning | None:
+def accuracy_warning(
+    error: float, required: float, place: str, of: str = "the force", size: str = ""
+) -> Warning | None:
     """A step whose estimated error exceeds the requested accuracy; both are relative.
 
     Args:
-        error, asked: parts of 1.
+        error, required: parts of 1.
         place: where the error is.
         of: the quantity with this error; size: the error in words.
     """
-    if error <= asked:
+    if error <= required:
         return None
     message = (
         f"{of} is uncertain by about {100 * error:.2g} %{size and f', {size},'} because of the step size, more than "
-        f"the case's accuracy of {100 * asked:.2g} %; a smaller accuracy or more steps reduce it"
+        f"the case's accuracy of {100 * required:.2g} %; a smaller accuracy or more steps reduce it"
     )
-    return Warning("step error", place, message, error, asked)
+    return Warning("step error", place, message, error, required)
 
 
 def beyond_validity(greatest: float, limit: float, material: str, place: str) -> Warning:
@@ -205,9 +207,9 @@ def _equivalent(shot: Snapshot) -> float:
 
 def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     """The larger of the errors of maximum force and set; or that the former could not be estimated."""
-    asked = setup.limits.accuracy
+    required = setup.limits.accuracy
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
-    if asked is None or top is None or not top.force_N:
+    if required is None or top is None or not top.force_N:
         return
     if is_turned(setup, result.steps):  # these errors are those of a force along the axis, here close to zero
         return
@@ -217,7 +219,7 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
                 f"the step-size error of the maximum force could not be estimated ({_place(top)}); "
                 "compare the force with that of smaller steps"
             )
-            yield Warning("unknown error", _place(top), message, None, asked)
+            yield Warning("unknown error", _place(top), message, None, required)
         return
     worst, place, of = abs(top.steps_force_error_N / top.force_N), _place(top), ("the force", "")
     release = last_release(setup, result)
@@ -225,7 +227,7 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     noticed = error is not None and abs(error) > NOTICED * setup.spring.free_length
     if release and error is not None and noticed and release.set > 0.0 and abs(error) > worst * release.set:
         worst, place, of = abs(error) / release.set, "set", ("the set", f"{abs(error):.2g} mm")
-    warning = accuracy_warning(worst, asked, place, *of)
+    warning = accuracy_warning(worst, required, place, *of)
     if warning is not None:
         yield warning
 
@@ -276,19 +278,19 @@ def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     """
     if is_turned(setup, result.steps):
         return {}
-    asked, release = setup.limits.accuracy or 0.0, last_release(setup, result)
-    found = {"force_N": asked * result.greatest_force}
+    required, release = setup.limits.accuracy or 0.0, last_release(setup, result)
+    found = {"force_N": required * result.greatest_force}
     if release is not None and release.set > 0.0:
-        found["set_mm"] = max(asked * release.set, NOTICED * setup.spring.free_length)
+        found["set_mm"] = max(required * release.set, NOTICED * setup.spring.free_length)
         largest = max(abs(shear_inside(setup, one)[0]) for one in result.snapshots)
-        found["residual_shear_inside_MPa"] = STRESS * asked * largest
+        found["residual_shear_inside_MPa"] = STRESS * required * largest
     return {name: error for name, error in found.items() if error > 0.0}
 
 
 def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
     """The numbers whose error by all causes is above the required accuracy, unless the steps alone are."""
-    asked, errors = setup.limits.accuracy, result.errors
-    if asked is None or errors is None or any(_step_error(setup, result)):
+    required, errors = setup.limits.accuracy, result.errors
+    if required is None or errors is None or any(_step_error(setup, result)):
         return
     worst, words = dict[str, float](), list[str]()
     for name, allowed in allowed_errors(setup, result).items():
@@ -298,10 +300,10 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
                 f"the error of the {NUMBERS[name]} by mesh, section points, contact and warping could not be "
                 "estimated; compare with a run of more mesh.elements_per_turn"
             )
-            yield Warning("unknown error", "mesh", message, None, asked)
+            yield Warning("unknown error", "mesh", message, None, required)
             return
         if error > allowed:
-            worst[name] = asked * error / allowed
+            worst[name] = required * error / allowed
             stress = name == "residual_shear_inside_MPa"
             size = f"{error:.2g} MPa" if stress else f"{100 * worst[name]:.2g} %"
             words.append(f"{size} of the {NUMBERS[name]}")
@@ -310,9 +312,9 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
         cause = errors.largest(largest)
         message = (
             f"the estimated error is {' and '.join(words)}, mostly because of the {CAUSES[cause]}, more than the "
-            f"case's accuracy of {100 * asked:.2g} % allows; {MORE[cause]}"
+            f"case's accuracy of {100 * required:.2g} % allows; {MORE[cause]}"
         )
-        yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], asked)
+        yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], required)
 
 
 def _longer(setup: Setup, result: Result) -> Iterator[Warning]:
