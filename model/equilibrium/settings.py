@@ -80,6 +80,7 @@ class StepControl:
         growth: factor on the length of an automatic step after an easy one; it never grows by more.
         shrinkage: factor on the length of an automatic step after a hard one.
         largest: maximum size of an automatic step.
+        largest_with_friction: the same with friction, as no estimate shows what long steps miss of its path.
         cut: factor on the length of a step that found no equilibrium.
         step_share: share of the requested accuracy that the error of one automatic step may use up.
         least_rest: share of that share which a step may use up even if nothing of the accuracy is left.
@@ -106,11 +107,12 @@ class StepControl:
     hard: Count = 10
     growth: Growth = 1.5
     shrinkage: Fraction = 0.7
-    largest: Growth = 2.0
+    largest: Growth = 3.0
+    largest_with_friction: Growth = 2.0
     cut: Fraction = 0.5
     step_share: Positive = 0.2
     least_rest: Fraction = 0.2
-    tolerated_share: Growth = 1.5
+    tolerated_share: Growth = 2.0
     finest: Fraction = 2.0**-6
     caution: Fraction = 0.9
     least_factor: Fraction = 0.25

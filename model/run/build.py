@@ -1,7 +1,7 @@
 """From a case to the parts of its analysis: mesh and rod, heat, Newton's method, control, continuation, records."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
@@ -176,6 +176,8 @@ def build_continuation(
         least_radius: of the elements, mm.
     """
     steps, accuracy = case.solver.control.steps, case.steps_error
+    if not newton.system.is_symmetric:
+        steps = replace(steps, largest=steps.largest_with_friction)
     error = None if accuracy is None else StepError(control, accuracy, steps)
     return Continuation(newton, steps, _deepest(case, least_radius), stability=stability, step_error=error)
 

@@ -64,6 +64,7 @@ FORCE, SET, SHEAR = 0.75, 1.0, 1.0
 SECTION = 1.25  # of the difference to the finer rule, which has an error of its own
 RIGID = 1.5  # of dU/ds: with forty times the bedding, forces of seven springs rose by 0.9 to 1.5 times as much
 TAKEN = 0.9  # part of the travel that the bedding takes at most: beyond, the force has no limit with rigid contacts
+BALANCE = FREE  # of the companion: with less of it, its released spring might not count as free of load
 NOT_KNOWN = Errors(None, None, None)
 
 
@@ -110,7 +111,7 @@ def _together(comm: MPI.Comm, action: Callable[[], object]) -> None:
 
 
 def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
-    """The case of the companion: half of the elements, the steps of the run, no estimates."""
+    """The case of the companion: half of the elements, the steps of the run, no estimates, a coarser balance."""
     mesh = case.mesh
     density = mesh.elements_per_turn
     if isinstance(density, Table):
@@ -128,6 +129,7 @@ def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
     update = {
         "mesh": mesh.model_copy(update={"elements_per_turn": coarse, "sagitta": sagitta}),
         "loading": loading,
+        "solver": case.solver.model_copy(update={"tolerance": max(case.solver.tolerance, BALANCE)}),
         "accuracy": "none",
     }
     return case.model_copy(update=update)

@@ -115,7 +115,7 @@ class LoadHistory:
         self.stability = Stability(self.newton.iteration)
         self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
         self.continuation.refusal, self.continuation.cause = self._passed, self._gives_way
-        self.continuation.steps = steps(case.solver.control.steps)
+        self.continuation.steps = steps(self.continuation.control)
         self.program = LoadProgram(self.control, self.continuation)
         self.setup = build_setup(case, spring, wire, kinds, coiling_diameter)
         self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.stability, detailed)

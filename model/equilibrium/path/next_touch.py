@@ -5,8 +5,10 @@ that flowed is suddenly unloaded. A step across it is wrong by the force that th
 way to the touch, and its equilibrium is far from any guess. But the guess of a step shows at which part of it a gap
 closes. The step is made SHORT of that; from there the guess is so much better that a second, short one ends within
 NEAR of the touch, and a third one of size CROSSING goes across it. The rates at its end are those with the contact
-closed: the next step may be RESTART long again, and its guess shows what touches next.
+closed: the next step may be RESTART long, and its guess shows what touches next.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 from petsc4py import PETSc
@@ -17,9 +19,10 @@ from coilset.model.contact.elements import PAIR
 from coilset.model.equilibrium.system.system import System
 
 DEEP = 1e-3  # wire diameters: what the guess closes by less is no first touch, but a contact that spreads
-SHORT = 0.98
-NEAR, CROSSING, RESTART = 2.0**-9, 2.0**-6, 0.5  # sizes, in regular steps
-BISECTIONS = 12
+SHORT, EXACT = 0.98, 0.002  # of the part; how exactly it is found
+NEAR, CROSSING, RESTART = 2.0**-9, 2.0**-6, 0.25  # sizes, in regular steps
+FIRST = 2.0**-12  # a touch nearer to the start is at it
+MARGIN = 0.05  # distance that a trial keeps from both ends of the bracket, as a share of its width
 
 
 class NextTouch:
@@ -47,22 +50,36 @@ class NextTouch:
             trial = system.touching.halo.trial(x + part * u, seats + part * moved, rotations)
             return [contact.evaluate(trial) for contact in self._limiting]
 
+        after, deep = touching(1.0), DEEP * 2.0 * rod.largest_radius
+        if max_of_ranks(system.comm, max(found.deepest for found in after)) <= deep:
+            return 1.0
         closed = [sides(found)[found.bears] for found in touching(0.0)]
 
-        def depth(part: float) -> float:
+        def depth(contacts: list[Contribution]) -> float:
             depths = [
                 found.penetration[~np.isin(sides(found), before)].max(initial=0.0)
-                for found, before in zip(touching(part), closed, strict=True)
+                for found, before in zip(contacts, closed, strict=True)
             ]
             return max_of_ranks(system.comm, max(depths))
 
-        if depth(1.0) <= DEEP * 2.0 * rod.largest_radius:
+        if (end := depth(after)) <= deep:
             return 1.0
-        low, high = 0.0, 1.0
-        for _bisection in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if depth(middle) == 0.0 else (low, middle)
-        return low
+        return _first_touch(lambda part: depth(touching(part)), end)
+
+
+def _first_touch(depth: Callable[[float], float], end: float) -> float:
+    """Greatest part found at which the depth is 0 yet; it grows about linearly from there, to `end` at the whole."""
+    low, high, part, rise = 0.0, 1.0, 0.5, 0.0
+    while high - low > max(EXACT * high, FIRST):
+        found = depth(part)
+        if found > 0.0:
+            rise = (end - found) / (high - part)
+            high, end = part, found
+        else:
+            low = part
+        margin, straight = MARGIN * (high - low), high - end / rise if rise > 0.0 else 0.5 * (low + high)
+        part = min(max(straight, low + margin), high - margin)
+    return low
 
 
 def sides(found: Contribution) -> np.ndarray:
