@@ -177,7 +177,7 @@ def build_continuation(
     """
     steps, accuracy = case.solver.control.steps, case.steps_error
     if not newton.system.is_symmetric:
-        steps = replace(steps, largest=steps.largest_with_friction)
+        steps = replace(steps, largest=min(steps.largest, steps.largest_with_friction))
     error = None if accuracy is None else StepError(control, accuracy, steps)
     return Continuation(newton, steps, _deepest(case, least_radius), stability=stability, step_error=error)
 
