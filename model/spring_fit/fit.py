@@ -1,8 +1,8 @@
 """Least squares of a wire's constants to presses of springs.
 
-The uniform rod searches; then whole rods of the constants found say what it lacks at each reading (ends that close,
-contacts, the stresses of coiling), and it searches again, until the constants stay. Whole rods on a coarse mesh say at
-first what each constant changes; the search ends where the curves of the whole rod on the mesh of the case are those
+The uniform rod searches; then whole rods of the constants found show what it lacks at each reading (ends that close,
+contacts, the stresses of coiling), and it searches again, until the constants stay. There whole rods on a coarse mesh
+show what each constant changes; the search ends where the curves of the whole rod on the mesh of the case are those
 that fit.
 """
 
@@ -260,13 +260,14 @@ def _settled(model: Model, x: np.ndarray) -> tuple[Model, np.ndarray, OptimizeRe
     Raises:
         SolveError: if the constants do not come to rest.
     """
-    nearest, best, refreshed = math.inf, (model, x, minimum(model, x)[1], 0), False
+    best: tuple[Model, np.ndarray, OptimizeResult, int] | None = None
+    nearest, refreshed = math.inf, False
     for number in range(1, ROUNDS + 1):
         model = model.shifted(x)
         whole, (after, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x)
         small = SETTLED * max(_scatter(model, found), 1.0) ** 2
         settled = min(whole - 2.0 * found.cost, nearest - whole) < small
-        if whole < nearest:
+        if best is None or whole < nearest:
             nearest, best = whole, (model, after, found, number)
         if settled and refreshed:
             return best
