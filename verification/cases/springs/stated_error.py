@@ -67,7 +67,7 @@ def draw(study: Study, ratios: dict[str, list[float]]) -> None:
             spread = 0.25 * np.linspace(-1.0, 1.0, len(values)) if len(values) > 1 else np.zeros(1)
             axes.plot(k + spread, np.sort(values), "o", ms=4, mfc="none")
             axes.plot([k - 0.3, k + 0.3], 2 * [np.median(values)], "-", color="k", lw=1.5)
-        axes.axhline(1.0, color="C3", lw=1, label="true error = stated error")
+        axes.axhline(1.0, color="k", lw=1, ls="--", label="true error = stated error")
         axes.set(yscale="log", ylabel="stated error over true error", title="Random springs, default settings")
         axes.set_xticks(range(len(ratios)), [name.replace(", ", "\nin ") for name in ratios])
         axes.legend(title="bars: medians")
