@@ -111,7 +111,7 @@ def _together(comm: MPI.Comm, action: Callable[[], object]) -> None:
 
 
 def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
-    """The case of the companion: half of the elements, the steps of the run, no estimates, a coarser balance."""
+    """The case of the companion: half of the elements, the steps of the run, no estimates, a balance of its own."""
     mesh = case.mesh
     density = mesh.elements_per_turn
     if isinstance(density, Table):
@@ -129,7 +129,7 @@ def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
     update = {
         "mesh": mesh.model_copy(update={"elements_per_turn": coarse, "sagitta": sagitta}),
         "loading": loading,
-        "solver": case.solver.model_copy(update={"tolerance": max(case.solver.tolerance, BALANCE)}),
+        "solver": case.solver.model_copy(update={"tolerance": BALANCE}),
         "accuracy": "none",
     }
     return case.model_copy(update=update)
