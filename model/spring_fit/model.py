@@ -219,9 +219,12 @@ class Model:
             step = self._step(x, k)
             moved = x.copy()
             moved[k] += step
-            there = self._difference(moved, self._whole(moved, rods.COARSE)[0])
-            for one, before, after in zip(slopes, here, there, strict=True):
-                one[:, k] = (after - before) / step
+            turn = k - len(self.fitted)
+            changed = range(len(self.pressings)) if turn < 0 else [self.turns[turn][0]]
+            for number in changed:
+                branches, _ = self._pressed(moved, number, rods.COARSE)
+                there = self.predicted(moved, number, branches) - self.uniform(moved)[number]
+                slopes[number][:, k] = (there - here[number]) / step
         return replace(self, slopes_missing=slopes)
 
     def with_shares(self, x: np.ndarray, shares: Sequence[float]) -> "Model":
@@ -288,9 +291,13 @@ class Model:
         return replace(self, missing=missing, slopes_missing=other.slopes_missing, weights=other.weights)
 
     def _whole(self, x: np.ndarray, fine: rods.Steps) -> tuple[list[list[Branch]], float]:
-        material = self.form.material(self.values(x), TRIAL)
-        runs = [rods.whole(one, material, self.ends(x, k), fine) for k, one in enumerate(self.pressings)]
+        runs = [self._pressed(x, number, fine) for number in range(len(self.pressings))]
         return [branches for branches, _ in runs], max(work for _, work in runs)
+
+    def _pressed(self, x: np.ndarray, number: int, fine: rods.Steps) -> tuple[list[Branch], float]:
+        """One press by the whole rod, and the greatest plastic work per volume."""
+        material = self.form.material(self.values(x), TRIAL)
+        return rods.whole(self.pressings[number], material, self.ends(x, number), fine)
 
     def _difference(self, x: np.ndarray, whole: Sequence[Sequence[Branch]]) -> tuple[np.ndarray, ...]:
         """Readings by whole rods less those by uniform ones."""

@@ -29,16 +29,25 @@ LAST = 0.15  # of the force: end coils open in the last part of a release, which
 
 
 class Steps(NamedTuple):
-    """How finely a rod follows a press: steps down, back, over the last part, and its mesh (the case's if None)."""
+    """How finely a rod follows a press: steps down, back, over the last part; and what its mesh has unlike the case's.
+
+    Attributes:
+        press, back, last: numbers of steps.
+        mesh: entries of the mesh, but for its section.
+        section: rings and angles of its section.
+        shaped: whether `section` holds for any wire; else only for round wire that was not coiled.
+    """
 
     press: int
     back: int
     last: int
-    mesh: Mapping[str, Any] | None = None
+    mesh: Mapping[str, Any] = {}
+    section: Mapping[str, int] = {}
+    shaped: bool = True
 
 
-USUAL = Steps(24, 12, 12)
-COARSE = Steps(12, 3, 3, {"elements_per_turn": 8, "section": {"radial": 4, "angular": 12}})  # to begin with
+USUAL = Steps(12, 8, 12, {}, {"radial": 5, "angular": 12}, False)  # half of the default's time, its curves
+COARSE = Steps(12, 3, 3, {"elements_per_turn": 8, "sagitta": None}, {"radial": 4, "angular": 12})  # to begin with
 
 
 @dataclass(frozen=True)
@@ -138,8 +147,11 @@ def steps(
         loading = [phase for _, phase in program]
         entries = pressing.case.model_dump(mode="json")
         entries |= {"material": str(file), "loading": loading, "accuracy": "none", "rates_at": []}
-        if fine.mesh is not None and entries["mesh"]["section"]["kind"] != "warping":
-            entries["mesh"] = fine.mesh
+        section = entries["mesh"]["section"]
+        if section["kind"] != "warping":
+            entries["mesh"] |= fine.mesh
+            if fine.shaped or ("wire_diameter" in entries["spring"] and not pressing.coiled):
+                section |= fine.section
         run = Analysis(check_entries(entries, Case), MPI.COMM_SELF, detailed=False).run().steps
     return [[step for step in run if program[step.phase][0] == branch] for branch in range(len(ends))]
 
