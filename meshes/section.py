@@ -40,23 +40,30 @@ class SectionMesh:
     extent: tuple[float, float, float, float]
     middle: tuple[float, float] | None
 
+    def sides(self) -> Iterator[tuple[int, int]]:
+        """Cell of each facet on the surface, and the facet's number in it."""
+        topology = self.mesh.topology
+        topology.create_connectivity(1, 2)
+        topology.create_connectivity(2, 1)
+        to_cell, to_facet = topology.connectivity(1, 2), topology.connectivity(2, 1)
+        for facet in self.facets:
+            cell = to_cell.links(facet)[0]
+            yield cell, list(to_facet.links(cell)).index(facet)
+
     @property
     def equivalent_diameter(self) -> float:
         """Diameter of the round section of the same area, mm."""
         return 2.0 * np.sqrt(self.area / np.pi)
 
 
-def section_mesh(
-    outline: Outline, across: float = 5.0, degree: int = 3, surface: float = 1.0, inside: float = 1.0
-) -> SectionMesh:
+def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, inside: float = 1.0) -> SectionMesh:
     """Mesh a section.
 
     Args:
         outline: `Outline`, see `section_shapes`.
         across: triangles across the round section of the same area, up to MOST_ACROSS.
         degree: of the triangles' sides and of the displacements, 2 or 3.
-        surface: how much finer the triangles are at the surface than in the middle.
-        inside: how much finer they are at the inside of the coil, where stress is highest and varies most: from the
+        inside: how much finer the triangles are at the inside of the coil, where stress is highest and varies most: from the
             point of minimum ξ to the middle their size grows in proportion to the distance.
 
     Returns:
@@ -84,7 +91,7 @@ def section_mesh(
             size = 2.0 * np.sqrt(area / np.pi) / across
             along = [_samples(tag) for _, tag in outer]
             extent = _extent(np.concatenate(along))
-            _sizes(size, surface, inside, [tag for _, tag in outer], extent)
+            _sizes(size, inside, extent)
             gmsh.model.addPhysicalGroup(2, [face], name="section")
             gmsh.model.mesh.generate(2)
             gmsh.model.mesh.setOrder(degree)
@@ -154,27 +161,12 @@ def _middle(along: list[np.ndarray]) -> tuple[float, float] | None:
     return (float(reached.min()), float(reached.max())) if len(reached) else None
 
 
-def _sizes(
-    size: float, surface: float, inside: float, curves: list[int], extent: tuple[float, float, float, float]
-) -> None:
-    """Set the triangle size in the current gmsh model: size/surface at the curves, size/inside at the inside."""
-    field, options = gmsh.model.mesh.field, gmsh.option
+def _sizes(size: float, inside: float, extent: tuple[float, float, float, float]) -> None:
+    """Set the triangle size in the current gmsh model: size/inside at the inside."""
     for name in ("MeshSizeFromPoints", "MeshSizeFromCurvature", "MeshSizeExtendFromBoundary"):
-        options.setNumber(f"Mesh.{name}", 0)
-    options.setNumber("Mesh.MeshSizeMax", size)
-    options.setNumber("Mesh.Algorithm", 6)  # frontal Delaunay: even triangles
-    distance, threshold = field.add("Distance"), field.add("Threshold")
-    field.setNumbers(distance, "CurvesList", curves)
-    field.setNumber(distance, "Sampling", 200)
-    for name, value in (
-        ("InField", distance),
-        ("SizeMin", size / surface),
-        ("SizeMax", size),
-        ("DistMin", 0.5 * size / surface),
-        ("DistMax", 2.0 * size),
-    ):
-        field.setNumber(threshold, name, value)
-    field.setAsBackgroundMesh(threshold)
+        gmsh.option.setNumber(f"Mesh.{name}", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+    gmsh.option.setNumber("Mesh.Algorithm", 6)  # frontal Delaunay: even triangles
     left, right, low, high = extent
 
     def nearer(dimension: int, tag: int, ξ: float, η: float, zero: float, asked: float) -> float:

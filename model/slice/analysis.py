@@ -21,6 +21,7 @@ from coilset.model.slice.watch import Watch
 from coilset.model.standards.wires.law import case_law
 
 ACROSS, INSIDE = 5.75, 2.0  # triangles across the section, how much finer at the inside: 600 unknowns for a round wire
+DEGREE = 2  # of the displacements
 AUTOMATIC = 16  # number of equal steps of a phase whose steps are `auto`
 PROBE = 1e-6  # travel over which the initial rate is measured, in free lengths
 TOUCHING = 1e-7  # gap at which coils count as touching, in wire diameters
@@ -92,7 +93,7 @@ class SliceAnalysis:
     Args:
         case: Case; its mesh, seat shapes and solver are ignored.
         outline: of the section; default is the round wire. `wire_diameter` must equal its height along the spring.
-        across: triangles across the section; degree: of the displacements, see `meshes.section`.
+        across: triangles across the section, see `meshes.section`.
 
     Attributes:
         spring, law, coil, body, problem: geometry, Law, Coil, Slice, SliceProblem.
@@ -103,7 +104,7 @@ class SliceAnalysis:
             goes below block.
     """
 
-    def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS, degree: int = 2):
+    def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS):
         self.case, self.spring = case, case.spring.build()
         for entry in case.past:
             problem = f"a slice begins free of stress; leave '{entry}' out, or use 'coilset solve'"
@@ -118,7 +119,7 @@ class SliceAnalysis:
         d, D, pitch = (same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
         self.coil, self.turns = Coil(0.5 * D, pitch), self.spring.turns
-        section = section_mesh(outline or round_wire(d), across, degree, inside=INSIDE)
+        section = section_mesh(outline or round_wire(d), across, DEGREE, inside=INSIDE)
         _fits(section.extent, d)
         self.body = Slice(section, self.coil, self.law, case.temperature)
         self.lattice = Lattice(self.body)

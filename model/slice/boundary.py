@@ -40,18 +40,11 @@ class Boundary:
     @classmethod
     def of(cls, body: Slice) -> "Boundary":
         """The surface of a slice's section."""
-        mesh, V = body.section.mesh, body.forms.V
-        element = V.element.basix_element
-        closure = element.entity_closure_dofs[1]
-        mesh.topology.create_connectivity(1, 2)
-        mesh.topology.create_connectivity(2, 1)
-        to_cell, to_facet = mesh.topology.connectivity(1, 2), mesh.topology.connectivity(2, 1)
+        V, element = body.forms.V, body.forms.V.element.basix_element
         nodes = V.tabulate_dof_coordinates()[:, :2]
         blocks, upward = [], []
-        for facet in body.section.facets:
-            cell = to_cell.links(facet)[0]
-            local = closure[list(to_facet.links(cell)).index(facet)]
-            edge = V.dofmap.list[cell][local]
+        for cell, side in body.section.sides():
+            edge = V.dofmap.list[cell][element.entity_closure_dofs[1][side]]
             edge = np.array([edge[0], *edge[2:], edge[1]])  # of vertices first and inner nodes after
             inner = nodes[V.dofmap.list[cell]].mean(axis=0)
             chord = nodes[edge[-1]] - nodes[edge[0]]

@@ -9,7 +9,7 @@ from coilset.model.slice.gap import Gaps, Sides, gaps
 from coilset.model.slice.pressure import Pressure
 from coilset.model.slice.slice import Slice
 
-STIFFNESS = 10.0  # default stiffness of the bedding over E/d: as stiff as the triangles at the surface
+STIFFNESS = 10.0  # of the bedding over E/d: as stiff as the triangles at the surface
 ONSET = 1e-4  # distance over which contact sets in, in equivalent wire diameters
 STEEP = 0.3  # minimum component of the normal along the coil's axis for an edge that may touch
 GAUSS = 4  # contact points per edge
@@ -20,16 +20,16 @@ class SelfContact:
 
     Args:
         body: Slice.
-        stiffness: pressure per penetration, N/mm³; default 10 E/d.
 
     Attributes:
         blocks: blocks of degrees of freedom that may touch.
+        stiffness: pressure per penetration, N/mm³.
     """
 
-    def __init__(self, body: Slice, stiffness: float | None = None):
+    def __init__(self, body: Slice):
         diameter = body.section.equivalent_diameter
         self.body, self.onset = body, ONSET * diameter
-        self.stiffness = STIFFNESS * body.law.E / diameter if stiffness is None else stiffness
+        self.stiffness = STIFFNESS * body.law.E / diameter
         self._edges = edges = Boundary.of(body)
         self._above = np.flatnonzero(edges.upward > STEEP)
         self._below = np.flatnonzero(edges.upward < -STEEP)

@@ -22,9 +22,8 @@ import ufl
 from dolfinx import fem
 
 from coilset.meshes.section import SectionMesh
+from coilset.model.solid.forms import as_tensor, strain_components
 
-# Order of the six components: 11, 22, 33, 12, 13, 23; shear strains are doubled.
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 # The points that carry the state integrate products of gradients exactly on a triangle with straight sides.
 QUADRATURE_DEGREE = {2: 2, 3: 4}
 RISE, TURN = 0, 1  # the two numbers h̄ and λ
@@ -48,17 +47,6 @@ def tangents(v: Any, third: Any) -> Any:
 def last_column(third: Any) -> Any:
     """The matrix [ 0 | 0 | third ]."""
     return ufl.as_matrix([[0.0, 0.0, third[i]] for i in range(3)])
-
-
-def strain_components(L: Any) -> Any:
-    """Components of the symmetric part of L, shear doubled."""
-    return ufl.as_vector([L[i, i] if i == j else L[i, j] + L[j, i] for i, j in PAIRS])
-
-
-def as_tensor(σ: Any) -> Any:
-    """Symmetric tensor of six components."""
-    index = {pair: k for k, pair in enumerate(PAIRS)}
-    return ufl.as_tensor([[σ[index[min(i, j), max(i, j)]] for j in range(3)] for i in range(3)])
 
 
 class SliceForms:

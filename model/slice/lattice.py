@@ -28,16 +28,10 @@ class Lattice:
         nodes = mesh.geometry.x[geometry_dofs(mesh)][:, :, :2]
         self.places = np.einsum("qb,cbi->cqi", element.tabulate(0, local)[0, :, :, 0], nodes).reshape(-1, 2)
         self._shape, self._dofs = V.element.basix_element.tabulate(0, local)[0, :, :, 0], V.dofmap.list
-        self.triangles = _all_cells(_small_triangles(), len(nodes), len(local))
+        first = len(local) * np.arange(len(nodes))  # point of each cell
+        self.triangles = (_small_triangles() + first[:, None, None]).reshape(-1, 3)
         sides = [np.flatnonzero(np.isclose(value, 0.0)) for value in (1.0 - local.sum(axis=1), *local.T)]
-        mesh.topology.create_connectivity(1, 2)
-        mesh.topology.create_connectivity(2, 1)
-        to_cell, to_facet = mesh.topology.connectivity(1, 2), mesh.topology.connectivity(2, 1)
-        rim = []
-        for facet in body.section.facets:
-            cell = to_cell.links(facet)[0]
-            rim.append(cell * len(local) + sides[list(to_facet.links(cell)).index(facet)])
-        self.rim = np.array(rim)
+        self.rim = np.array([cell * len(local) + sides[side] for cell, side in body.section.sides()])
         self.surface = np.unique(self.rim)
 
     def positions(self, x: np.ndarray) -> np.ndarray:
@@ -52,7 +46,3 @@ def _small_triangles() -> np.ndarray:
     up = [(first[j] + i, first[j] + i + 1, first[j + 1] + i) for j in range(n) for i in range(n - j)]
     down = [(first[j] + i + 1, first[j + 1] + i + 1, first[j + 1] + i) for j in range(n) for i in range(n - j - 1)]
     return np.array(up + down)
-
-
-def _all_cells(triangles: np.ndarray, cells: int, points: int) -> np.ndarray:
-    return (triangles[None] + points * np.arange(cells)[:, None, None]).reshape(-1, 3)

@@ -14,7 +14,8 @@ from coilset.model.results.files.folder import make
 from coilset.model.results.files.grid_file import write_grid
 from coilset.model.results.records.labels import plain
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
-from coilset.model.slice.watch import equivalent, shear
+from coilset.model.slice.watch import shear
+from coilset.model.solid.continuum import mises
 
 
 def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
@@ -34,7 +35,7 @@ def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
         grid.point_data["place"] = np.pad(lattice.places, ((0, 0), (0, 1)))
         grid.point_data["stress"] = shot.stress
         grid.point_data["shear stress"] = shear(shot.stress)
-        grid.point_data["von Mises stress"] = equivalent(shot.stress)
+        grid.point_data["von Mises stress"] = mises(shot.stress)
         grid.point_data["plastic work"] = shot.work
         write_grid(folder / f"{number:02d}_{shot.name.replace(' ', '_')}.vtu", grid)
 
@@ -57,7 +58,7 @@ def figure(path: Path, analysis: SliceAnalysis) -> None:
         for row, shot in zip(axes, rows, strict=True):
             _row(sheet, row, analysis, shot)
         law, coil = analysis.law.name, analysis.coil
-        least, most = (plain(float(f(equivalent(shots[-1].stress))), 2) for f in (np.min, np.max))
+        least, most = (plain(float(f(mises(shots[-1].stress))), 2) for f in (np.min, np.max))
         sheet.suptitle(
             f"At {shots[-1].name} the von Mises stress runs from {least} to {most} MPa ({law}, "
             f"D = {2 * coil.radius:g} mm; the coil's axis is on the left)"
@@ -68,10 +69,10 @@ def figure(path: Path, analysis: SliceAnalysis) -> None:
 def _row(sheet: Figure, row: list[Axes], analysis: SliceAnalysis, shot: SliceSnapshot) -> None:
     lattice, when = analysis.lattice, f"{shot.name}, {round(shot.force, 2) + 0.0:.2f} N"
     around = around_the_wire(lattice.places, shot.stress)
-    limit, mises = max(float(np.abs(around).max()), 1e-9), equivalent(shot.stress)
+    limit, von_mises = max(float(np.abs(around).max()), 1e-9), mises(shot.stress)
     for axes, values, shades, colours, name in (
         (row[0], around, levels(-limit, limit), DIVERGING, "shear about the wire's axis"),
-        (row[1], mises, levels(0.0, float(mises.max())), "viridis", "von Mises stress"),
+        (row[1], von_mises, levels(0.0, float(von_mises.max())), "viridis", "von Mises stress"),
     ):
         shown = axes.tricontourf(*lattice.places.T, lattice.triangles, values, levels=shades, cmap=colours)
         for side in lattice.rim:

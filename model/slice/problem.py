@@ -25,6 +25,7 @@ from coilset.model.slice.watch import Watch
 # A fill-reducing order eliminates the dense rows and columns of h̄ and λ last.
 OPTIONS = {"pc_factor_mat_ordering_type": FILL_REDUCING, "pc_factor_fill": 3.0, "snes_max_it": 20}
 STEPS = StepControl(smallest=2.0**-8)
+PRECISION = 1e-6  # ε of (6.3.1): out-of-balance forces relative to the change of force and torque in the step
 TURNING = AXIAL + SEAT_DOFS // 2  # the freedom that λ drives: the top head about the axis
 
 
@@ -43,7 +44,6 @@ class SliceProblem:
         body: Slice.
         free_ends: the ends may turn about the coil's axis (no torque); otherwise they cannot (λ = 1).
         contact: SelfContact of the body; without it coils pass through each other.
-        precision: ε of (6.3.1): out-of-balance forces relative to the change of force and torque in the step.
         turns: of the spring; free_length: its height, mm, by default that of its turns.
 
     Attributes:
@@ -58,7 +58,6 @@ class SliceProblem:
         body: Slice,
         free_ends: bool = False,
         contact: SelfContact | None = None,
-        precision: float = 1e-6,
         turns: float = 1.0,
         free_length: float | None = None,
     ):
@@ -72,7 +71,7 @@ class SliceProblem:
         self._numbers = {AXIAL: layout.size - 2, TURNING: layout.size - 1}  # unknowns of h̄ and λ
         self._per_unknown = {AXIAL: self._angle, TURNING: self._angle / body.coil.radius}
         self.system = System(body, layout)
-        self.newton = Newton(self.system, rod_method("newton", 1, OPTIONS), precision)
+        self.newton = Newton(self.system, rod_method("newton", 1, OPTIONS), PRECISION)
         self.continuation = Continuation(self.newton, STEPS, starts=self._starts)
         self.program = LoadProgram(self, self.continuation)
         self.system.restore()
@@ -140,15 +139,13 @@ class SliceProblem:
             self.system.restore()
             raise
 
-    def go_to_rise(
-        self, rise: float, turn: float | None = None, hours: float = 0.0, temperature: float | None = None
-    ) -> Effort:
+    def go_to_rise(self, rise: float, turn: float | None = None, hours: float = 0.0) -> Effort:
         """Find the equilibrium at a rise h̄, mm/rad, in one step, which is cut if it is not found.
 
         Args:
             rise: h̄ at the end of the step.
             turn: λ at the end of the step if the ends are turned; not with free ends.
-            hours: that it takes; temperature: at its end, K, by default as it is.
+            hours: that it takes.
 
         Raises:
             SolveError: as `run`.
@@ -157,11 +154,11 @@ class SliceProblem:
         drives = () if turn is None else (Drive(TURNING, "value", self._angle * (turn - 1.0)),)
         height = self.free_length + self._angle * (rise - self.body.coil.rise)
         label = f"a pitch of {2 * np.pi * rise:g} mm"
-        return self._go(Stage("height", height, 1, label, hours, temperature, True, drives))
+        return self._go(Stage("height", height, 1, label, hours, None, True, drives))
 
-    def go_to_force(self, force: float, hours: float = 0.0, temperature: float | None = None) -> Effort:
+    def go_to_force(self, force: float) -> Effort:
         """Find the equilibrium under an axial force, compression positive, N; otherwise as `go_to_rise`."""
-        return self._go(Stage("force", force, 1, f"{force:g} N", hours, temperature, True))
+        return self._go(Stage("force", force, 1, f"{force:g} N", 0.0, None, True))
 
     def _go(self, stage: Stage) -> Effort:
         taken = list(self.run(stage))

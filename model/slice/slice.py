@@ -1,8 +1,8 @@
 """The slice as a body: its position, the state of its points, its forces and their derivatives."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from dolfinx import fem
@@ -18,14 +18,6 @@ from coilset.model.slice.forms import RISE, TURN, SliceForms, assemble
 from coilset.model.slice.pressure import NO_PRESSURE, SliceContact
 from coilset.model.solid.continuum import Continuum
 from coilset.model.solid.points import MaterialPoints, respond
-
-
-class Follower(Protocol):
-    """Something that follows a slice from equilibrium to equilibrium."""
-
-    def evaluate(self) -> np.ndarray:
-        """Point states at the slice's increment, trial values of its state; SolveError if there are none."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -72,7 +64,7 @@ class Slice(Continuum):
         places, areas: of the points in the unloaded section, shapes (points, 2), mm, and (points,), mm².
         turns: whether λ may change; else its derivatives are left out.
         contact: with the next coil, or None; pressure: its Pressure at the last evaluation.
-        watches: each is evaluated before a new equilibrium.
+        followers: called before a new equilibrium, to integrate the law at the points of a Watch.
 
     Raises:
         InputError: a section that reaches the coil's axis, or a temperature outside the material's table.
@@ -99,7 +91,7 @@ class Slice(Continuum):
         self.extra = self.state.add("rise_and_turn", np.array([coil.rise, coil.radius]), Where.SHARED)
         self._out = self.forms.stress.x.array.reshape(-1, 6), self.forms.moduli.x.array.reshape(-1, 6, 6)
         self.places, self.areas = self._places()
-        self.turns, self.watches = True, list[Follower]()
+        self.turns, self.followers = True, list[Callable[[], object]]()
         self.contact: SliceContact | None = None
         self.pressure = NO_PRESSURE
         self.update()
@@ -161,8 +153,8 @@ class Slice(Continuum):
 
     def advance(self) -> None:
         """Integrate the law at the watched points; see Body."""
-        for watch in self.watches:
-            watch.evaluate()
+        for follow in self.followers:
+            follow()
 
     def resultants(self) -> np.ndarray:
         """Axial force on the slice, tension positive, N, and torque about the coil's axis, N mm, without contact."""

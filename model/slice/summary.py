@@ -8,7 +8,8 @@ from coilset.model.base.warning import Warning
 from coilset.model.results.records.summary_entries import UNSEEN
 from coilset.model.results.records.warnings import beyond_validity
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
-from coilset.model.slice.watch import equivalent, shear
+from coilset.model.slice.watch import shear
+from coilset.model.solid.continuum import mises
 from coilset.model.standards.case_warnings import case_warnings
 
 
@@ -83,7 +84,7 @@ def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
         "shear_inside_MPa": float(shot.line[0, 4]),
         "shear_outside_MPa": float(shot.line[-1, 4]),
     }
-    for name, values in (("shear", shear(stress)), ("equivalent_stress", equivalent(stress))):
+    for name, values in (("shear", shear(stress)), ("equivalent_stress", mises(stress))):
         at = int(np.argmax(values))
         out |= {f"surface_{name}_max_MPa": float(values[at]), f"surface_{name}_max_at_mm": places[at].tolist()}
     return out

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from coilset.model.base.errors import SolveError
 from coilset.model.body.state import Where
 from coilset.model.slice.slice import Slice
+from coilset.model.solid.continuum import tensors
 from coilset.model.solid.points import respond
 
 NEIGHBOURS = 20  # integration points per patch
@@ -21,7 +22,7 @@ class Watch:
     """Points of a slice, followed as material points; create it before the first step.
 
     Args:
-        body: Slice, which notifies its watches of every equilibrium.
+        body: Slice, which evaluates its watches before every new equilibrium.
         places: ξ, η, shape (n, 2), mm.
 
     Attributes:
@@ -32,9 +33,9 @@ class Watch:
         self.body, self.places = body, np.atleast_2d(np.asarray(places, float))
         self._weights = patch_weights(body.places, self.places)
         self._rows = body.state.add(
-            f"watch_{len(body.watches)}", body.points.initial_state(len(self.places)), Where.CELL
+            f"watch_{len(body.followers)}", body.points.initial_state(len(self.places)), Where.CELL
         )
-        body.watches.append(self)
+        body.followers.append(self.evaluate)
 
     @property
     def state(self) -> np.ndarray:
@@ -62,9 +63,7 @@ class Watch:
         Returns:
             σ11, σ22, σ33, τ12, τ13, τ23, shape (n, 6), MPa.
         """
-        six = (self.state if state is None else state)[:, :6]
-        σ = six[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
-        axes = self.body.axes()
+        σ, axes = tensors((self.state if state is None else state)[:, :6]), self.body.axes()
         turned = np.einsum("ia,nij,jb->nab", axes, σ, axes)
         return turned[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
 
@@ -72,13 +71,6 @@ class Watch:
 def shear(stress: np.ndarray) -> np.ndarray:
     """Magnitude of the shear stress in the section, √(τ12² + τ13²), of components (..., 6), MPa."""
     return np.hypot(stress[..., 3], stress[..., 4])
-
-
-def equivalent(stress: np.ndarray) -> np.ndarray:
-    """von Mises stress of components (..., 6), MPa."""
-    n, t = stress[..., :3], stress[..., 3:]
-    spread = (n[..., 0] - n[..., 1]) ** 2 + (n[..., 1] - n[..., 2]) ** 2 + (n[..., 2] - n[..., 0]) ** 2
-    return np.sqrt(0.5 * spread + 3.0 * np.sum(t * t, axis=-1))
 
 
 def patch_weights(points: np.ndarray, samples: np.ndarray) -> np.ndarray:

@@ -7,6 +7,18 @@ from coilset.model.body.state import State, Where
 from coilset.model.solid.points import MaterialPoints
 
 
+def mises(six: np.ndarray) -> np.ndarray:
+    """Von Mises stress of six components, shape (..., 6) → (...), MPa."""
+    n, t = six[..., :3], six[..., 3:]
+    spread = (n[..., 0] - n[..., 1]) ** 2 + (n[..., 1] - n[..., 2]) ** 2 + (n[..., 2] - n[..., 0]) ** 2
+    return np.sqrt(0.5 * spread + 3.0 * np.sum(t * t, axis=-1))
+
+
+def tensors(six: np.ndarray) -> np.ndarray:
+    """Symmetric tensors of six components, shape (n, 6) → (n, 3, 3)."""
+    return six[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+
+
 class Continuum(Body):
     """A body of points in three dimensions, updated Lagrange: increments start at the last equilibrium.
 

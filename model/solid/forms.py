@@ -15,9 +15,8 @@ from coilset.model.solid.configuration import Configuration
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
-def strain_components(v: Expr) -> Expr:
-    """Components of the symmetric gradient of v, shear doubled."""
-    g = ufl.grad(v)
+def strain_components(g: Expr) -> Expr:
+    """Components of the symmetric part of a gradient, shear doubled."""
     return ufl.as_vector([g[i, i] if i == j else g[i, j] + g[j, i] for i, j in PAIRS])
 
 
@@ -52,9 +51,10 @@ class SolidForms:
         v, du = ufl.TestFunction(V), ufl.TrialFunction(V)
         σ = as_tensor(self.stress)
         # (4.4.1) on the current volume, and its linearisation: material part and initial stress
-        work = ufl.dot(self.stress, strain_components(v)) * self.dx
-        material = ufl.dot(strain_components(v), ufl.dot(self.moduli, strain_components(du)))
-        initial = ufl.inner(ufl.grad(v), ufl.dot(ufl.grad(du), σ))
+        of_v, of_du = ufl.grad(v), ufl.grad(du)
+        work = ufl.dot(self.stress, strain_components(of_v)) * self.dx
+        material = ufl.dot(strain_components(of_v), ufl.dot(self.moduli, strain_components(of_du)))
+        initial = ufl.inner(of_v, ufl.dot(of_du, σ))
         self.residual = fem.form(work)
         self.tangent = fem.form((material + initial) * self.dx)
         # ∂Δu/∂x in the current configuration, which gives the increment F = (1 − ∂Δu/∂x)⁻¹

@@ -12,6 +12,7 @@ from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.style import QUARTERED, round_end
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.grid_file import write_grid
+from coilset.model.solid.continuum import mises
 from coilset.model.solid.solid import Solid
 
 BAR = {
@@ -25,13 +26,6 @@ BAR = {
     "position_y": 0.02,
     "height": 0.16,
 }
-
-
-def mises(stress: np.ndarray) -> np.ndarray:
-    """von Mises stress of six components, shape (..., 6) → (...)."""
-    n, t = stress[..., :3], stress[..., 3:]
-    spread = (n[..., 0] - n[..., 1]) ** 2 + (n[..., 1] - n[..., 2]) ** 2 + (n[..., 2] - n[..., 0]) ** 2
-    return np.sqrt(0.5 * spread + 3 * np.sum(t * t, axis=-1))
 
 
 def at_nodes(solid: Solid, values: np.ndarray) -> np.ndarray:

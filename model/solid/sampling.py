@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from coilset.meshes.solid import SolidMesh
 from coilset.model.base.compat import geometry_dofs
+from coilset.model.solid.continuum import tensors
 from coilset.model.solid.solid import Solid
 
 Patches = tuple[np.ndarray, np.ndarray]  # points of each patch and their weights
@@ -76,8 +77,7 @@ class SectionSample:
 
     def stress(self) -> np.ndarray:
         """σ11, τ12, τ13 at the last equilibrium with 1 = t, 2 = outward, 3 = t × outward, shape (n, 3), MPa."""
-        six = self._recover(self.solid.point_state[self._cells, :, :6], self._patches)
-        σ = six[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+        σ = tensors(self._recover(self.solid.point_state[self._cells, :, :6], self._patches))
         axes = self.frame()[1]
         return np.einsum("nij,i,jk->nk", σ, axes[:, 0], axes)
 
