@@ -63,8 +63,8 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, inside:
         outline: `Outline`, see `section_shapes`.
         across: triangles across the round section of the same area, up to MOST_ACROSS.
         degree: of the triangles' sides and of the displacements, 2 or 3.
-        inside: how much finer the triangles are at the inside of the coil, where stress is highest and varies most: from the
-            point of minimum ξ to the middle their size grows in proportion to the distance.
+        inside: how much finer the triangles are at the inside of the coil, where stress is highest and varies most:
+            from the point of minimum ξ to the middle their size grows in proportion to the distance.
 
     Returns:
         SectionMesh.

@@ -44,6 +44,10 @@ class Language(StrEnum):
     de = "de"
 
 
+SETTINGS = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file")
+RESULTS = typer.Argument(metavar="RESULTS", help="results folder of a run")
+FORCE = typer.Option(False, *OVERWRITE, help="overwrite existing results")
+FIGURE, FIGURES = (typer.Option(True, help=f"draw the {word}") for word in ("figure", "figures"))
 THREADS = typer.Option(
     None, min=1, envvar="COILSET_THREADS", help="threads [default: as many as cores, on several ranks one for each]"
 )
@@ -80,9 +84,9 @@ def options(
 def solve(
     case: str = typer.Argument(help="case file (YAML)"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE]"),
-    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
-    pictures: bool = typer.Option(True, help="draw the figures"),
+    force: bool = FORCE,
+    settings: list[str] = SETTINGS,
+    pictures: bool = FIGURES,
     resume: bool = typer.Option(False, "--resume", help="continue from the last converged step in the results folder"),
     interactive: bool = typer.Option(
         False, "--interactive", help="pause after each step; Enter continues, ? shows help"
@@ -135,11 +139,11 @@ def _check_case(case: str, settings: list[str]) -> None:
 def slice_(
     case: str = typer.Argument(help="case file (YAML) of a cylindrical spring"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE-slice]"),
-    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
+    force: bool = FORCE,
+    settings: list[str] = SETTINGS,
     section: str = typer.Option(None, help="oval:4:5, rectangle:4:5:0.5, trapezoid:4:5:6:0.4, FILE.csv"),
     across: float = typer.Option(None, help="number of triangles across the section [default: 5.75]"),
-    pictures: bool = typer.Option(True, help="draw the figure"),
+    pictures: bool = FIGURE,
 ) -> None:
     """Solve a cylindrical spring as a 3D body, through a single section of its wire, and write the results."""
     from coilset.scripts.commands.slice import slice_case
@@ -151,12 +155,12 @@ def slice_(
 def solid(
     case: str = typer.Argument(help="case file (YAML) of a cylindrical spring of round wire"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE-solid]"),
-    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
+    force: bool = FORCE,
+    settings: list[str] = SETTINGS,
     turns: float = typer.Option(1.0, help="turns of the solid, 1 to 5"),
     across: int = typer.Option(None, min=1, max=12, help="elements along a side of the wire's core [default: 2]"),
     layers: int = typer.Option(24, min=4, max=400, help="elements round a turn"),
-    pictures: bool = typer.Option(True, help="draw the figures"),
+    pictures: bool = FIGURES,
 ) -> None:
     """Solve some turns of a cylindrical spring as a 3D solid, and as a rod beside it, and write the results."""
     from coilset.scripts.commands.solid import solid_case
@@ -168,7 +172,7 @@ def solid(
 def nest(
     file: str = typer.Argument(help="nest file (YAML): two case files, and the heights of their common seats"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-FILE]"),
-    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
+    force: bool = FORCE,
     pictures: bool = typer.Option(True, help="draw the characteristic"),
     threads: int = THREADS,
 ) -> None:
@@ -186,7 +190,7 @@ def mesh(
         None, callback=folder_target, help="folder for the pictures [default: results/NAME-OF-CASE]"
     ),
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
+    settings: list[str] = SETTINGS,
     write: list[str] = typer.Option(
         [],
         callback=file_targets,
@@ -220,7 +224,7 @@ def sheet(
     language: Language = typer.Option("en", help="of the files: en or de"),
     height: float = typer.Option(None, help="of the spring in the .step file, mm [default: that of the drawing]"),
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite an existing figure"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
+    settings: list[str] = SETTINGS,
     wires: bool = typer.Option(False, "--wires", help="list the standard wires, or all numbers of --wire"),
     pictures: bool = typer.Option(True, help="draw the Goodman diagram"),
 ) -> None:
@@ -260,9 +264,7 @@ def report(
 
 
 @app.command()
-def fields(
-    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
-) -> None:
+def fields(results: str = RESULTS) -> None:
     """Write time series of a run for ParaView: centre line, wire as a tube, section points."""
     from coilset.model.figures.series import write_series
     from coilset.model.results.files.opened import open_run
@@ -272,9 +274,7 @@ def fields(
 
 
 @app.command()
-def animate(
-    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
-) -> None:
+def animate(results: str = RESULTS) -> None:
     """Write an animation of a run: the spring through its load program, coloured by stress."""
     from coilset.model.figures.animation import animate as draw
     from coilset.model.results.files.opened import open_run
@@ -285,13 +285,13 @@ def animate(
 
 @app.command()
 def modes(
-    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+    results: str = RESULTS,
     at: str = typer.Option(
         "end", metavar="STATE", help="end, or from there: block, block-3mm, height=30, travel=5, force=100"
     ),
     count: int = typer.Option(10, min=1, max=1000, help="number of modes"),
     glued: bool = typer.Option(False, "--glued", help="coils that touch cannot slide on each other"),
-    pictures: bool = typer.Option(True, help="draw the figure"),
+    pictures: bool = FIGURE,
 ) -> None:
     """Find natural frequencies and modes of the spring of a run, at its end or under another load, and write them."""
     compile_first(stages=("rod",))
@@ -302,7 +302,7 @@ def modes(
 
 @app.command()
 def surge(
-    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+    results: str = RESULTS,
     at: str = typer.Option(
         "end", metavar="STATE", help="where it starts: end, or from there height=46, travel=5, force=100, block-3mm"
     ),
@@ -312,7 +312,7 @@ def surge(
     motion: str = typer.Option(None, metavar="FILE", help="CSV with time_s and travel_mm, in place of a valve's lift"),
     step: float = typer.Option(None, metavar="S", help="of time [default: a 20th of the first axial mode's period]"),
     seconds: float = typer.Option(None, help="duration [default: the lift and five periods of the first axial mode]"),
-    pictures: bool = typer.Option(True, help="draw the figure"),
+    pictures: bool = FIGURE,
 ) -> None:
     """Drive the head of the spring of a run over time, with the mass of its wire, and write forces and energies."""
     compile_first(stages=("rod",))
@@ -341,7 +341,7 @@ def sweep(
     scheduler: str = typer.Option(None, metavar="ADDRESS", help="of a running Dask cluster, such as tcp://host:8786"),
     jobs: int = typer.Option(None, min=1, help="processes on this machine [default: one per core]"),
     ranks_per_case: int = typer.Option(1, min=1, help="under mpirun: number of ranks that share a case"),
-    pictures: bool = typer.Option(True, help="draw the figures"),
+    pictures: bool = FIGURES,
 ) -> None:
     """Solve many variants of a case."""
     from coilset.model.sweep.engines.processes import Workers
@@ -401,7 +401,7 @@ def design(
 def compare(
     folder: str = typer.Argument(help="folder of a measured spring or nest: case.yaml or nest.yaml, and measured.csv"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/compare/NAME]"),
-    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
+    force: bool = FORCE,
 ) -> None:
     """Compare measured numbers of a spring with the run of its case."""
     announce_compiling()

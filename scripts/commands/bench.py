@@ -16,7 +16,7 @@ from rich.table import Table
 
 from coilset.model.results.files.folder import clear, make, whole
 from coilset.model.runtime.processes import folder_of_mpirun, mpi_settings, mpirun, usable_cores
-from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.console import Console, table
 from coilset.scripts.terminal.spring_costs import comparison, cost_table
 from coilset.verification.benchmarks.everyday import MEASURED, everyday, launchers, of_a_new_command
 from coilset.verification.benchmarks.measure import STAGES, per_element
@@ -60,8 +60,8 @@ def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
     make(folder)
     with whole(folder / "bench.json") as path:
         path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    for table in tables(record):
-        console.print(table)
+    for one in tables(record):
+        console.print(one)
     found = record["machine"]
     console.print(
         f"{found['processor']}, {found['cores']} cores, load {found['load']:.1f} at the start, "
@@ -174,10 +174,10 @@ def tables(record: dict[str, Any]) -> Iterable[Table]:
     rows, example = record["commands"], record["example"]
     sides = ("", ", the other")[: len(rows[0]["end"])]
     heads = [f"{kind}{side}" for kind in MEASURED for side in sides]
-    yield _table(
-        "commands, medians, s",
+    yield table(
         ["command", *heads],
         ([row["name"], *(f"{value:.2f}" for kind in MEASURED for value in row[kind])] for row in rows),
+        "commands, medians, s",
     )
     first = [one - other for one, other in zip(example["first"], example["analysis"], strict=True)]
     stages = {"import": example["import"], "load compiled code": first}
@@ -185,11 +185,9 @@ def tables(record: dict[str, Any]) -> Iterable[Table]:
         stages["compile, from nothing"] = [a - b for a, b in zip(record["cold"], example["analysis"], strict=True)]
     stages |= example["stages"] | {name: example[name] for name in ("analysis", "output", "pictures")}
     title = f"example: {example['elements']} elements, {example['steps']} steps, {example['iterations']} iterations"
-    yield _table(
-        title, ["stage", "elapsed, ms", "processor, ms"], ([name, *_ms(pair)] for name, pair in stages.items())
-    )
-    yield _table(
-        "one plastic step from rest, clamped heads",
+    rows = ([name, *(f"{1e3 * value:.1f}" for value in pair)] for name, pair in stages.items())
+    yield table(["stage", "elapsed, ms", "processor, ms"], rows, title)
+    yield table(
         ["elements", "iterations", "plastic", "memory, GiB", "µs per element and iteration", *STAGES],
         (
             [
@@ -202,9 +200,9 @@ def tables(record: dict[str, Any]) -> Iterable[Table]:
             ]
             for run in record["elements"]
         ),
+        "one plastic step from rest, clamped heads",
     )
-    yield _table(
-        "one rank and two in turns, medians; processor time is that of the busier rank, its waiting included",
+    yield table(
         ["spring", "elements", "contacts", "one, s", "two, s", "ratio", "one, processor", "two", "difference of force"],
         (
             [
@@ -218,17 +216,5 @@ def tables(record: dict[str, Any]) -> Iterable[Table]:
             ]
             for row in record["ranks"]
         ),
+        "one rank and two in turns, medians; processor time is that of the busier rank, its waiting included",
     )
-
-
-def _ms(pair: Iterable[float]) -> list[str]:
-    return [f"{1e3 * value:.1f}" for value in pair]
-
-
-def _table(title: str, columns: Iterable[str], rows: Iterable[Iterable[str]]) -> Table:
-    table = Table(title=title, title_justify="left", box=None, padding=(0, 2), header_style="bold")
-    for number, column in enumerate(columns):
-        table.add_column(column, justify="right" if number else "left")
-    for row in rows:
-        table.add_row(*row)
-    return table

@@ -6,8 +6,6 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
-from rich.table import Table
-
 from coilset.model.base.errors import InputError, naming
 from coilset.model.case.names import entry_name
 from coilset.model.design import output
@@ -20,7 +18,7 @@ from coilset.model.design.trade_offs import TradeOff, trade_offs
 from coilset.model.results.files.folder import clear, making
 from coilset.model.runtime.threads import usual
 from coilset.model.sweep.journal import Journal, read_records
-from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.console import Console, table
 from coilset.scripts.terminal.log import run_log
 from coilset.scripts.terminal.target import results_folder
 
@@ -129,25 +127,19 @@ def _list(console: Console, options: Options) -> None:
     """The combinations that were evaluated, and how their best relates to all."""
     tried = len(options.tried)
     among = f"all {tried}" if tried == options.total else f"the {tried} evaluated of {options.total}"
-    table = Table(box=None, padding=(0, 2))
-    for name in options.best.chosen:
-        table.add_column(name, justify="right")
-    table.add_column("")
+    made = table([*options.best.chosen, ""], left=0)
     for one in options.tried:
         result = one.reason or ("met" if one.found and one.found.met else f"off by {100.0 * one.off:.2g} %")
         cells = [f"{value:.7g}" for value in one.chosen.values()]
-        table.add_row(*cells, result + (f" (the best of {among})" if one is options.best else ""))
-    console.print(table)
+        made.add_row(*cells, result + (f" (the best of {among})" if one is options.best else ""))
+    console.print(made)
 
 
 def _estimates(console: Console, search: Search, rows: list[TradeOff]) -> None:
     console.print("estimates for other targets (fast model, corrected by the runs):")
-    table = Table(box=None, padding=(0, 2))
-    table.add_column("", no_wrap=True)
     heads = [one.head for one in search.evaluator.named]
-    for head in (*heads, "wire length, mm", "length as wound, mm", "torque/yield"):
-        table.add_column(head, justify="right")
-    table.add_column("")
+    made = table(["", *heads, "wire length, mm", "length as wound, mm", "torque/yield", ""])
+    made.columns[0].no_wrap = True
     targets = {one.name: one for one in search.conditions}
     for row in rows:
         value = f"{row.value:.6g}" if isinstance(row.value, float) else str(row.value)
@@ -159,8 +151,8 @@ def _estimates(console: Console, search: Search, rows: list[TradeOff]) -> None:
         else:
             entry = entry_name(row.of)
             of = f"{entry.words} {value} {entry.unit}".rstrip()
-        table.add_row(of, *cells, "" if row.possible else "out of reach")
-    console.print(table)
+        made.add_row(of, *cells, "" if row.possible else "out of reach")
+    console.print(made)
 
 
 # ---- the folder ------------------------------------------------------------------------------------------------------

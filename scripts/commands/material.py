@@ -231,36 +231,30 @@ def _write_csv(path: Path, history: "History") -> None:
 
 
 def _constants(law: "Law") -> "Table":
-    from rich.table import Table
+    from coilset.scripts.terminal.console import table
 
-    table = Table(box=None, padding=(0, 2))
-    table.add_column("constant")
-    for temperature in law.temperatures:
-        table.add_column(f"{temperature:g} K", justify="right")
-    table.add_column("unit")
+    made = table(["constant", *(f"{temperature:g} K" for temperature in law.temperatures)])
+    made.add_column("unit")
     rows = [dict(law.constants(temperature)) for temperature in law.temperatures]
     for name, unit in {name: unit for row in rows for name, (_, unit) in row.items()}.items():
-        table.add_row(name, *(f"{row[name][0]:.7g}" if name in row else "–" for row in rows), unit)
+        made.add_row(name, *(f"{row[name][0]:.7g}" if name in row else "–" for row in rows), unit)
     if law.is_adiabatic:
-        table.add_row("heating", f"{law.heating:.4g}", *[""] * (len(rows) - 1), "K mm²/N")
-    return table
+        made.add_row("heating", f"{law.heating:.4g}", *[""] * (len(rows) - 1), "K mm²/N")
+    return made
 
 
 def _ends(program: "Program", history: "History") -> "Table":
     """Table of the state at the end of each step: the strains and stresses of the program, and b*."""
     import numpy as np
-    from rich.table import Table
 
     from coilset.model.material.identification.figures import SYMBOLS
+    from coilset.scripts.terminal.console import table
 
     names = {**SYMBOLS, "plastic_work": "b*", "temperature": "T"}
     columns = [(names[name], values) for name, values in history.columns() if name in names and np.ptp(values) > 1e-9]
-    table = Table(box=None, padding=(0, 1))
-    table.add_column("end of step")
-    for name, _ in columns:
-        table.add_column(name, justify="right", no_wrap=True)
+    made = table(["end of step", *(name for name, _ in columns)], padding=1)
     for index, step in enumerate(program.steps):
         row = (history.step == index).nonzero()[0][-1]
         values = (values[row] if abs(values[row]) > 1e-9 * abs(values).max() else 0.0 for _, values in columns)
-        table.add_row(f"{index + 1} {step.name}", *(f"{value:.5g}" for value in values))
-    return table
+        made.add_row(f"{index + 1} {step.name}", *(f"{value:.5g}" for value in values))
+    return made

@@ -4,15 +4,13 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 from mpi4py import MPI
-from rich.table import Table
 
 from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError, naming
 from coilset.model.case import read_case
 from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
-from coilset.model.standards.data import SpringData, spring_data
+from coilset.model.standards.data import spring_data
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires.law import case_elastic, case_law
 from coilset.scripts.terminal.console import Console
@@ -29,15 +27,6 @@ def mesh(
     height: float | None = None,
 ) -> None:
     """Print the data of a spring, draw it, and write its mesh; see `coilset mesh --help`.
-
-    Args:
-        case_file: the case file.
-        out: folder of the pictures; default results/NAME-OF-CASE.
-        force: replace existing files.
-        settings: texts `key=value` that replace entries of the case file.
-        write: mesh files to write; the suffix determines the format.
-        pictures: draw the spring.
-        height: between the seats, mm; None of the unloaded spring.
 
     Raises:
         InputError: wrong input, or files that exist already.
@@ -59,7 +48,8 @@ def mesh(
         elastic = case_elastic(case, case_law(case, spring))
         spring = spring if height is None else spring.at_height(height)
     refuse_to_replace([folder / name for name in DRAWN if pictures] + [Path(path) for path in write], force)
-    console.print(_table(spring_data(spring, elastic), turns))
+    rows = ((label, f"{value} {unit}".strip()) for label, value, unit in spring_data(spring, elastic).rows())
+    console.pairs([*rows, ("elements", str(len(turns) - 1))])
     for warning in spring_warnings(spring, elastic):
         console.warn(warning.message)
     for path in write:
@@ -83,14 +73,6 @@ def mesh(
 
 def _is_body(path: str | Path) -> bool:
     return Path(path).suffix.lower() == ".step"
-
-
-def _table(data: SpringData, turns: np.ndarray) -> Table:
-    table = Table(show_header=False, box=None, padding=(0, 2))
-    for label, value, unit in data.rows():
-        table.add_row(label, f"{value} {unit}".strip())
-    table.add_row("elements", str(len(turns) - 1))
-    return table
 
 
 def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
-from rich.table import Table
 
 from coilset.meshes.section_shapes import parse
 from coilset.meshes.springs.spring import SpringSpec
@@ -38,15 +37,6 @@ def slice_case(
 ) -> None:
     """Run the slice of a case; see `coilset slice --help`.
 
-    Args:
-        case_file: the case file.
-        out: results folder; default results/NAME-OF-CASE-slice.
-        force: replace existing results.
-        settings: texts `key=value` that replace entries of the case file.
-        section: the section in words or a CSV file of its outline, see `meshes.section_shapes.parse`; default is round.
-        across: triangles across the section.
-        pictures: draw the figure.
-
     Raises:
         InputError, SolveError: the latter after the results so far are written.
     """
@@ -68,7 +58,7 @@ def slice_case(
     console.print(f"{HEAD}  contacts")
     failure = None
     try:
-        analysis.run(lambda step: console.print(_row(step)))
+        analysis.run(lambda step: console.print(step_row(step) + ("  coils" if step.contacts else "")))
     except SolveError as error:
         failure = error
     summary = summarise(analysis)
@@ -91,10 +81,6 @@ def _placed(error: InputError, case: Case, case_file: str | Path) -> InputError:
     return InputError(error.problem, error.place.replace("mean_diameter", given), case_file)
 
 
-def _row(step: SliceStep) -> str:
-    return step_row(step) + ("  coils" if step.contacts else "")
-
-
 def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures: bool) -> None:
     from coilset.model.slice import output
 
@@ -107,16 +93,18 @@ def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures
 
 
 def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
-    table = Table(show_header=False, box=None, padding=(0, 2))
-    table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
-    table.add_row("free length after", quantity(summary["free_length_after_mm"], "mm"))
-    table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
-    table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
-    table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))
-    table.add_row("shear stress, inside of coil, loaded", quantity(summary["shear_inside_max_MPa"], "MPa", 2))
-    table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
-    table.add_row("residual shear stress, inside of coil", quantity(summary["residual_shear_inside_MPa"], "MPa", 2))
-    console.print(table)
+    console.pairs(
+        [
+            ("free length before", quantity(summary["free_length_before_mm"], "mm")),
+            ("free length after", quantity(summary["free_length_after_mm"], "mm")),
+            ("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]"),
+            ("initial rate", quantity(summary["rate_N_per_mm"], "N/mm")),
+            ("maximum force", quantity(summary["force_max_N"], "N", 2)),
+            ("shear stress, inside of coil, loaded", quantity(summary["shear_inside_max_MPa"], "MPa", 2)),
+            ("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2)),
+            ("residual shear stress, inside of coil", quantity(summary["residual_shear_inside_MPa"], "MPa", 2)),
+        ]
+    )
     console.say(NOTE)
     console.say(f"  results in {out}{os.sep}", whole=True)
     for warning in summary["warnings"]:

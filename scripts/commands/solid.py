@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
-from rich.table import Table
 
 from coilset.meshes.solid_grid import SectionGrid
 from coilset.model.base.agreement import on_first_rank
@@ -17,7 +16,7 @@ from coilset.model.results.records.provenance import origin
 from coilset.model.turn import output
 from coilset.model.turn.analysis import GRID, LAYERS, TurnAnalysis, TurnStep
 from coilset.scripts.interrupt import Interrupt
-from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.console import Console, table
 from coilset.scripts.terminal.progress import duration, quantity, without_minus
 from coilset.scripts.terminal.target import results_folder
 
@@ -44,16 +43,6 @@ def solid_case(
 ) -> None:
     """Run some turns of a case as a solid; see `coilset solid --help`; collective.
 
-    Args:
-        case_file: the case file.
-        out: results folder; default results/NAME-OF-CASE-solid.
-        force: replace existing results.
-        settings: texts `key=value` that replace entries of the case file.
-        turns: of the solid.
-        across: elements along a side of the section's core, and rings around it.
-        layers: elements round a turn.
-        pictures: draw the figures.
-
     Raises:
         InputError, SolveError, KeyboardInterrupt: the latter two after the results so far are written.
     """
@@ -64,7 +53,8 @@ def solid_case(
     try:
         analysis = TurnAnalysis(case, turns, GRID if across is None else SectionGrid(across, across), layers, comm)
     except InputError as error:
-        raise error if error.file or error.place.startswith("-") else _placed(error, case_file) from None
+        placed = error.file or error.place.startswith("-")
+        raise error if placed else InputError(error.problem, error.place, case_file) from None
     cost = analysis.cost()
     console.say(
         f"{Path(case_file).name}: {turns:g} of {analysis.spring.turns:g} turns as a solid, {cost.unknowns:,} unknowns, "
@@ -73,8 +63,14 @@ def solid_case(
     console.print(" step travel, mm    force, N  rod's, N  iter.")
     failure: BaseException | None = None
     with Interrupt(comm, console.say) as interrupt:
+
+        def report(step: TurnStep) -> None:
+            forces = "".join(f"{without_minus(force, 3):>11}" for force in (step.force_N, step.rod_force_N))
+            console.print(f"{step.number:5d}{step.travel_mm:11.4f} {forces}{step.iterations:6d}")
+            interrupt.check()
+
         try:
-            analysis.run(lambda step: _report(step, console, interrupt))
+            analysis.run(report)
         except (SolveError, KeyboardInterrupt) as error:
             failure = error
     summary = output.summarise(analysis)
@@ -82,20 +78,6 @@ def solid_case(
     _conclude(console, summary, folder)
     if failure is not None:
         raise failure
-
-
-def _placed(error: InputError, case_file: str | Path) -> InputError:
-    return InputError(error.problem, error.place, case_file)
-
-
-def _report(step: TurnStep, console: Console, interrupt: Interrupt) -> None:
-    console.print(_row(step))
-    interrupt.check()
-
-
-def _row(step: TurnStep) -> str:
-    forces = "".join(f"{without_minus(force, 3):>11}" for force in (step.force_N, step.rod_force_N))
-    return f"{step.number:5d}{step.travel_mm:11.4f} {forces}{step.iterations:6d}"
 
 
 def _write(out: Path, analysis: TurnAnalysis, summary: dict[str, Any], pictures: bool) -> None:
@@ -108,14 +90,12 @@ def _write(out: Path, analysis: TurnAnalysis, summary: dict[str, Any], pictures:
 
 
 def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
-    table = Table(box=None, padding=(0, 2))
-    for head in ("", "solid", "rod", "rod − solid"):
-        table.add_column(head, justify="left" if not head else "right")
+    made = table(["", "solid", "rod", "rod − solid"])
     for name, entry, unit, digits in COLUMNS:
         here, there = summary[entry], summary["rod"][entry]
         if here is not None and there is not None:
             share = "" if not here else f"{100.0 * (there / here - 1.0):+.2f} %"
-            table.add_row(name, quantity(here, unit, digits), quantity(there, unit, digits), share)
-    console.print(table)
+            made.add_row(name, quantity(here, unit, digits), quantity(there, unit, digits), share)
+    console.print(made)
     console.say(NOTE)
     console.say(f"  results in {out}{os.sep}", whole=True)

@@ -5,6 +5,7 @@ import logging
 import os
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from mpi4py import MPI
@@ -52,7 +53,7 @@ def solve(
     Raises:
         InputError, SolveError: after the results so far are written.
     """
-    telling = VOICES[voice](comm.rank == 0, verbose)
+    output = VOICES[voice](comm.rank == 0, verbose)
     if interactive and comm.size > 1:
         raise InputError("works on one rank only; omit -n", "--interactive")
     if interactive and voice != "lines":
@@ -60,7 +61,7 @@ def solve(
     case = read_case(case_file, settings)
     folder = results_folder(out, Path(case_file).stem)
     with contextlib.ExitStack() as stack:
-        interrupt = stack.enter_context(Interrupt(comm, telling.say))
+        interrupt = stack.enter_context(Interrupt(comm, output.say))
         with naming(case_file):
             analysis = Analysis(case, comm, threads=threads or usual(comm.size))
         if analysis.law.creep is not None:
@@ -68,7 +69,7 @@ def solve(
         on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
         on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, force, resume))
         drawings = (drawings or stack.enter_context(Drawings(os.environ))) if pictures else None
-        _solve(telling, analysis, case_file, folder, drawings, resume, interactive, interrupt)
+        _solve(analysis, _Runs(output, case_file, folder, resume, interactive, interrupt), drawings)
 
 
 def _prepare(folder: Path, case: Case, force: bool, resume: bool) -> None:
@@ -90,44 +91,7 @@ def _begin(log: logging.FileHandler, out: Path, force: bool, resume: bool) -> No
         clear(out, RESULTS + DRAWN if force else RESULTS)
 
 
-def _solve(
-    telling: Lines,
-    first: Analysis,
-    case_file: str | Path,
-    out: Path,
-    drawings: Drawings | None,
-    resume: bool,
-    interactive: bool,
-    interrupt: Interrupt,
-) -> None:
-    began, runs, failure = time.perf_counter(), _Runs(telling, case_file, out, resume, interactive, interrupt), None
-    analysis = first
-    try:
-        analysis = runs(first) if interactive else within_accuracy(first, runs)
-    except (SolveError, KeyboardInterrupt) as error:
-        failure, analysis = error, runs.best
-    comm = analysis.comm
-    interrupt.over()
-    analysed = time.perf_counter() - began
-    summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
-    on_first_rank(comm, lambda: write_run(out, analysis.setup, analysis.result, summary, origin(analysis.case)))
-    telling.conclude(summary, out)
-    for warning in summary["warnings"]:
-        log.warning("warning: %s: %s", warning["name"], warning["message"])
-    if drawings:
-        try:
-            on_first_rank(comm, lambda: _draw(drawings, out, telling))
-        except CoilsetError as error:
-            if failure is None:
-                raise
-            telling.warn(str(error))
-    telling.say(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")
-    if failure is not None:
-        if analysis.result.steps:
-            telling.say("continue from the last step with --resume")
-        raise failure
-
-
+@dataclass
 class _Runs:
     """Runs the analyses of a case, the first and the finer ones, each with its checkpoint.
 
@@ -135,18 +99,14 @@ class _Runs:
         best: the last one whose results are to be written: the finest complete one, or the first.
     """
 
-    def __init__(
-        self,
-        telling: Lines,
-        case_file: str | Path,
-        out: Path,
-        resume: bool,
-        interactive: bool,
-        interrupt: Interrupt,
-    ) -> None:
-        self._telling, self._case_file, self._out = telling, case_file, out
-        self._resume, self._interactive, self._interrupt = resume, interactive, interrupt
-        self._number = 0
+    output: Lines
+    case_file: str | Path
+    folder: Path
+    resume: bool
+    interactive: bool
+    interrupt: Interrupt
+    best: Analysis = field(init=False)
+    number: int = 0
 
     def __call__(self, analysis: Analysis, finer: str = "") -> Analysis:
         """Run one; `finer` says what is finer than before.
@@ -154,31 +114,31 @@ class _Runs:
         Raises:
             SolveError, KeyboardInterrupt: as Analysis.run.
         """
-        comm, telling, checkpoint = analysis.comm, self._telling, Checkpoint(self._out, analysis.case, self._number)
-        if not self._number:
+        comm, output, checkpoint = analysis.comm, self.output, Checkpoint(self.folder, analysis.case, self.number)
+        if not self.number:
             self.best = analysis
-            if self._resume:
+            if self.resume:
                 analysis.resume(checkpoint.load(comm))
-            telling.begin(analysis, self._case_file, self._resume)
+            output.begin(analysis, self.case_file, self.resume)
         else:
-            if self._resume and comm.bcast(checkpoint.exists()):
+            if self.resume and comm.bcast(checkpoint.exists()):
                 try:
                     analysis.resume(checkpoint.load(comm))
                 except InputError as error:  # the case has changed since, and with it what must be finer
                     log.info("the finer run is not continued: %s", error)
-            telling.again(analysis, finer)
-        self._number += 1
-        ask = Prompt(analysis, telling.say) if self._interactive else None
+            output.again(analysis, finer)
+        self.number += 1
+        ask = Prompt(analysis, output.say) if self.interactive else None
 
         def report(step: Step) -> None:
-            telling.step(step)
-            self._interrupt.check()
+            output.step(step)
+            self.interrupt.check()
             if ask:
                 ask(step)
 
         try:
-            with telling.iterations():
-                analysis.run(report, checkpoint.save, self._interrupt.check)
+            with output.iterations():
+                analysis.run(report, checkpoint.save, self.interrupt.check)
         finally:
             if comm.rank == 0:
                 checkpoint.over()
@@ -186,6 +146,31 @@ class _Runs:
         return analysis
 
 
-def _draw(drawings: Drawings, out: Path, telling: Lines) -> None:
-    for warning in drawings.draw(out):
-        telling.warn(warning)
+def _solve(first: Analysis, runs: _Runs, drawings: Drawings | None) -> None:
+    """Run an analysis, and finer ones if need be; write, print and draw the results."""
+    began, failure, output, folder = time.perf_counter(), None, runs.output, runs.folder
+    try:
+        analysis = runs(first) if runs.interactive else within_accuracy(first, runs)
+    except (SolveError, KeyboardInterrupt) as error:
+        failure, analysis = error, runs.best
+    comm = analysis.comm
+    runs.interrupt.over()
+    analysed = time.perf_counter() - began
+    summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
+    on_first_rank(comm, lambda: write_run(folder, analysis.setup, analysis.result, summary, origin(analysis.case)))
+    output.conclude(summary, folder)
+    for warning in summary["warnings"]:
+        log.warning("warning: %s: %s", warning["name"], warning["message"])
+    if drawings:
+        try:
+            for problem in on_first_rank(comm, lambda: drawings.draw(folder)) or ():
+                output.warn(problem)
+        except CoilsetError as error:
+            if failure is None:
+                raise
+            output.warn(str(error))
+    output.say(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")
+    if failure is not None:
+        if analysis.result.steps:
+            output.say("continue from the last step with --resume")
+        raise failure

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.results.files.folder import clear, making, refuse_obstacles
@@ -23,7 +22,7 @@ from coilset.model.sweep.journal import Journal, Records, journals, read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import Limits, finished, missing, run
 from coilset.model.sweep.shards import WHOLE, Shard
-from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.console import Console, table
 from coilset.scripts.terminal.log import only_run
 from coilset.scripts.terminal.target import results_folder
 
@@ -215,17 +214,15 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
         console.print(line)
     if capable and options.pictures:
         write_png(out / "limits.png", [histogram(one) for one in capable])
-    table = Table(show_header=True, box=None, padding=(0, 2))
-    for column in ("", "minimum", "mean", "maximum"):
-        table.add_column(column, justify="left" if not column else "right")
+    extents = table(["", "minimum", "mean", "maximum"])
     turned = "turn_set_deg" in data and data["turn_set_deg"].notnull().any()
     for name in OF_TURNED if turned else OF_PRESSED:
         if name in data and data[name].notnull().any():
             words, unit = dataset.quantity(name)
             values = data[name]
             numbers = (f"{float(value):.5g}" for value in (values.min(), values.mean(), values.max()))
-            table.add_row(f"{words}, {unit}", *numbers)
-    console.print(table)
+            extents.add_row(f"{words}, {unit}", *numbers)
+    console.print(extents)
     failures = [k for k, status in enumerate(data.status.values) if status == "failed"]
     for k in failures[:SHOWN_FAILURES]:
         inputs = ", ".join(f"{name} = {data[name].values[k]}" for name in plan.names)

@@ -5,7 +5,6 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from mpi4py import MPI
 from rich.markup import escape
@@ -13,7 +12,7 @@ from rich.table import Table
 
 from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.results.files.folder import make, whole
-from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.console import Console, table
 from coilset.verification import registry
 from coilset.verification.page import page, percent
 from coilset.verification.study import Check, Study
@@ -62,12 +61,9 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
 
 def show() -> None:
     """List the cases."""
-    table = Table(box=None, padding=(0, 2))
-    for column in ("case", "", "quantity compared"):
-        table.add_column(column)
-    for case in map(registry.load, registry.names()):
-        table.add_row(case.name, "" if case.fast else "slow", case.title)
-    Console().print(table)
+    cases = map(registry.load, registry.names())
+    rows = ([case.name, "" if case.fast else "slow", case.title] for case in cases)
+    Console().print(table(["case", "", "quantity compared"], rows, left=3))
 
 
 def _run(case: registry.Case, folder: Path, console: Console) -> Study:
@@ -81,8 +77,9 @@ def _run(case: registry.Case, folder: Path, console: Console) -> Study:
         study.stopped = str(error)
         console.print(f"[red]{escape(study.stopped)}[/]")
     study.write(case.name)
-    for table in study.tables:
-        console.print(_plain_table(table))
+    for one in study.tables:
+        rows = (["" if value is None else _number(value) for value in row] for row in one["rows"])
+        console.print(table(one["columns"], rows, one["title"], left=0))
     for note in study.notes:
         console.print(note)
     files = ", ".join([*study.figures, "record.json"])
@@ -92,19 +89,17 @@ def _run(case: registry.Case, folder: Path, console: Console) -> Study:
 
 def _all_checks(found: Mapping[str, Study]) -> Table:
     """Every number of every case: what, computed, reference, deviation, tolerance, verdict."""
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    for column in ("case", "quantity", "computed", "reference", "deviation", "tolerance", "verdict", "source"):
-        table.add_column(
-            column, justify="right" if column in ("computed", "reference", "deviation", "tolerance") else "left"
-        )
+    made = table(("case", "quantity", "computed", "reference", "deviation", "tolerance"), left=2, padding=1)
+    for column in ("verdict", "source"):
+        made.add_column(column)
     for name, study in found.items():
         for check in study.checks:
             style = "" if check.judged and check.passed else "red" if check.judged else "yellow"
             row = [name, check.quantity, _number(check.ours), *_limits(check), check.verdict, check.source]
-            table.add_row(*row, style=style)
+            made.add_row(*row, style=style)
         if study.stopped:
-            table.add_row(name, "", "", "", "", "", escape(f"stopped: {study.stopped}"), "", style="red")
-    return table
+            made.add_row(name, "", "", "", "", "", escape(f"stopped: {study.stopped}"), "", style="red")
+    return made
 
 
 def _limits(check: Check) -> tuple[str, str, str]:
@@ -114,15 +109,6 @@ def _limits(check: Check) -> tuple[str, str, str]:
     number = percent if check.kind == "relative" else lambda value: f"{value:+.3g}"
     tolerance = number(check.tolerance).lstrip("+") if check.judged else "–"
     return _number(check.reference), number(check.deviation), tolerance
-
-
-def _plain_table(content: dict[str, Any]) -> Table:
-    table = Table(title=content["title"], title_justify="left", box=None, padding=(0, 2), header_style="bold")
-    for column in content["columns"]:
-        table.add_column(column, justify="right")
-    for row in content["rows"]:
-        table.add_row(*("" if value is None else _number(value) for value in row))
-    return table
 
 
 def _number(value: object) -> str:

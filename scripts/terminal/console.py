@@ -1,9 +1,35 @@
 """The console of all commands: names and messages are printed as they are, though brackets in them look like markup."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from rich import console
 from rich.markup import escape
+from rich.table import Table
+
+
+def table(
+    columns: Iterable[str],
+    rows: Iterable[Iterable[str]] = (),
+    title: str | None = None,
+    left: int = 1,
+    padding: int = 2,
+) -> Table:
+    """A table without lines, whose numbers end at the right.
+
+    Args:
+        columns: their heads; those without a head hold words.
+        rows: cells; more can be added.
+        title: above it, on the left.
+        left: number of columns, from the first on, that hold words, too.
+        padding: blanks on both sides of a cell.
+    """
+    made = Table(title=title, title_justify="left", box=None, padding=(0, padding))
+    for number, column in enumerate(columns):
+        made.add_column(column, justify="left" if number < left or not column else "right")
+    for row in rows:
+        made.add_row(*row)
+    return made
 
 
 class Console(console.Console):
@@ -19,6 +45,13 @@ class Console(console.Console):
     def say(self, text: str, whole: bool = False) -> None:
         """A line with names of the user's, wrapped at the width of the console unless it stays whole."""
         self.print(text, markup=False, soft_wrap=whole)
+
+    def pairs(self, rows: Iterable[tuple[str, str]]) -> None:
+        """Names and values, in two columns without heads."""
+        made = Table(show_header=False, box=None, padding=(0, 2))
+        for row in rows:
+            made.add_row(*row)
+        self.print(made)
 
     def warn(self, text: str, kind: str = "warning") -> None:
         """A warning, or another line that begins with its kind."""

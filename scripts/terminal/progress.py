@@ -17,7 +17,7 @@ from coilset.model.results.records.labels import largest_errors, lives_text, wit
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.results.records.units import quantity as name_and_unit
 from coilset.model.run.analysis import Analysis
-from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.console import Console, table
 
 if TYPE_CHECKING:  # not where a rod is solved
     from coilset.model.slice.analysis import SliceStep
@@ -99,12 +99,8 @@ class Lines:
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """Print the results."""
-        table = Table(show_header=False, box=None, padding=(0, 2))
-        if summary["turn_max_deg"] is None:
-            _add_pressed(table, summary)
-        else:
-            _add_turned(table, summary)
-        self.console.print(table)
+        rows = _pressed(summary) if summary["turn_max_deg"] is None else _turned(summary)
+        self.console.pairs(rows)
         if summary["working"]:
             self.console.print(working_table(summary["working"]))
         for limit in summary["limits"]:
@@ -209,21 +205,19 @@ def without_minus(value: float, digits: int) -> str:
 
 def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
     """The working states of summary.json, a row each; rate in N/mm, stresses in MPa, the true one at the inside."""
-    table = Table(show_header=True, box=None, padding=(0, 1))
-    for head in ("length, mm", "force, N", "rate", "τ", "τk", "true", "turn", "safety"):
-        table.add_column(head, justify="right", no_wrap=True)
+    made = table(("length, mm", "force, N", "rate", "τ", "τk", "true", "turn", "safety"), left=0, padding=1)
     for state in states:
         if state["reason"]:
             wanted = state.get("length_wanted", state.get("force_wanted"))
             place = (f"{wanted:g}", "-") if "length_wanted" in state else ("-", f"{wanted:g}")
-            table.add_row(*place)
+            made.add_row(*place)
             continue
         is_length = "length_wanted" in state
         error = state["estimated_error"]
         force = within(state["force_N"], error if is_length else None, "", 2).strip()
         length = within(state["length_mm"], None if is_length else error, "", 3).strip()
         numbers = [state[name] for name in ("shear_MPa", "corrected_shear_MPa", "shear_inside_MPa")]
-        table.add_row(
+        made.add_row(
             length,
             force,
             quantity(state["rate_N_per_mm"], "", 3).strip(),
@@ -231,7 +225,7 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
             f"{state['shear_inside_turn']:.2f}",
             "-" if state["safety"] is None else f"{state['safety']:.2f}",
         )
-    return table
+    return made
 
 
 def limit_line(limit: Mapping[str, Any]) -> str:
@@ -246,14 +240,12 @@ def limit_line(limit: Mapping[str, Any]) -> str:
 
 def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:
     """Fatigue by each criterion, of summary.json, a row each; stresses in MPa."""
-    table = Table(show_header=True, box=None, padding=(0, 1))
-    for head in ("fatigue by", "MPa", "endured", "safety", "turn", "angle", "lives 10, 50, 90 %"):
-        table.add_column(head, justify="right", no_wrap=True)
+    made = table(("fatigue by", "MPa", "endured", "safety", "turn", "angle", "lives 10, 50, 90 %"), left=0, padding=1)
     for one in entries:
         numbers = (f"{one[name]:.0f}" for name in ("amplitude_MPa", "endured_MPa"))
         place = f"{one['safety']:.2f}", f"{one['turn']:.2f}", f"{one['angle_deg']:z.0f}°"
-        table.add_row(one["criterion"], *numbers, *place, lives_text(one["lives"], "-"))
-    return table
+        made.add_row(one["criterion"], *numbers, *place, lives_text(one["lives"], "-"))
+    return made
 
 
 def contact_words(kinds: Sequence[ContactRecord], reactions: SeatReactions) -> str:
@@ -279,55 +271,55 @@ class _Handler(logging.Handler):
         self.console.print(f"[dim]{record.getMessage()}[/]", soft_wrap=True)
 
 
-def _add_beyond_coil(table: Table, summary: Mapping[str, Any], name: str) -> None:
+def _beyond_coil(summary: Mapping[str, Any], name: str) -> Iterator[tuple[str, str]]:
     """Rows of hooks or arms."""
     if summary["tail_stress_max_MPa"] is not None:
-        table.add_row(f"maximum stress along the wire, {name}", quantity(summary["tail_stress_max_MPa"], "MPa", 1))
-        table.add_row("  there after the release", quantity(summary["residual_tail_stress_MPa"], "MPa", 1))
+        yield f"maximum stress along the wire, {name}", quantity(summary["tail_stress_max_MPa"], "MPa", 1)
+        yield "  there after the release", quantity(summary["residual_tail_stress_MPa"], "MPa", 1)
 
 
-def _add_pressed(table: Table, summary: Mapping[str, Any]) -> None:
+def _pressed(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Rows of a spring that is compressed or pulled."""
     of_set = summary["estimated_set_error_mm"]
     if summary["initial_tension_N"] is not None:
-        table.add_row("initial tension before", quantity(summary["initial_tension_N"], "N", 2))
-        table.add_row("initial tension after", quantity(summary["initial_tension_after_N"], "N", 2))
-        table.add_row("rate, coils open", quantity(summary["open_rate_N_per_mm"], "N/mm"))
-    _add_beyond_coil(table, summary, "hooks")
-    table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
+        yield "initial tension before", quantity(summary["initial_tension_N"], "N", 2)
+        yield "initial tension after", quantity(summary["initial_tension_after_N"], "N", 2)
+        yield "rate, coils open", quantity(summary["open_rate_N_per_mm"], "N/mm")
+    yield from _beyond_coil(summary, "hooks")
+    yield "free length before", quantity(summary["free_length_before_mm"], "mm")
     for number, release in enumerate(summary["releases"][:-1], 1):
-        table.add_row(f"free length after release {number}", quantity(release["free_length_mm"], "mm"))
+        yield f"free length after release {number}", quantity(release["free_length_mm"], "mm")
     last = "free length after the last release" if len(summary["releases"]) > 1 else "free length after"
-    table.add_row(last, within(summary["free_length_after_mm"], of_set, "mm", 4))
-    table.add_row("[bold]set[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]")
-    table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
+    yield last, within(summary["free_length_after_mm"], of_set, "mm", 4)
+    yield "[bold]set[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]"
+    yield "initial rate", quantity(summary["rate_N_per_mm"], "N/mm")
     if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
         finished = summary["rate_30_70_after_N_per_mm"]
         name = "rate at 30 to 70 % of the travel" if finished is None else "rate of the finished spring, 30 to 70 %"
-        table.add_row(name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm"))
+        yield name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm")
     for rate in summary["rates"]:
-        table.add_row(f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm"))
-    table.add_row("maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2))
+        yield f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm")
+    yield "maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2)
     if summary["load_loss_percent"] is not None:
-        table.add_row("load lost in time", quantity(summary["load_loss_percent"], "%", 2))
-    table.add_row("block height", quantity(summary["block_height_mm"], "mm"))
-    table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
+        yield "load lost in time", quantity(summary["load_loss_percent"], "%", 2)
+    yield "block height", quantity(summary["block_height_mm"], "mm")
+    yield "maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2)
     error, turn = summary["estimated_residual_shear_inside_error_MPa"], summary["residual_shear_inside_turn"]
     inside = within(summary["residual_shear_inside_MPa"], error, "MPa", 2)
     at = "" if turn is None else f" at turn {turn:.2f}"
-    table.add_row("residual shear stress, inside of coil", inside + at)
+    yield "residual shear stress, inside of coil", inside + at
     if largest := largest_errors(summary["estimated_errors"]):
-        table.add_row("largest part of the errors ±", largest)
+        yield "largest part of the errors ±", largest
 
 
-def _add_turned(table: Table, summary: Mapping[str, Any]) -> None:
+def _turned(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Rows of a torsion spring."""
-    table.add_row("[bold]set[/]", f"[bold]{quantity(summary['turn_set_deg'], '°', 2)}[/]")
-    table.add_row("largest rotation", quantity(summary["turn_max_deg"], "°", 2))
-    table.add_row("maximum torque", quantity(summary["torque_max_Nmm"], "N mm", 1))
-    table.add_row("rate", quantity(summary["turn_rate_Nmm_per_deg"], "N mm/°"))
+    yield "[bold]set[/]", f"[bold]{quantity(summary['turn_set_deg'], '°', 2)}[/]"
+    yield "largest rotation", quantity(summary["turn_max_deg"], "°", 2)
+    yield "maximum torque", quantity(summary["torque_max_Nmm"], "N mm", 1)
+    yield "rate", quantity(summary["turn_rate_Nmm_per_deg"], "N mm/°")
     for side in ("inside", "outside"):
         stress = quantity(summary[f"residual_bending_{side}_MPa"], "MPa", 2)
-        table.add_row(f"residual bending stress, {side} of coil", stress)
-    _add_beyond_coil(table, summary, "arms")
-    table.add_row("smallest inner diameter", quantity(summary["inner_diameter_min_mm"], "mm", 2))
+        yield f"residual bending stress, {side} of coil", stress
+    yield from _beyond_coil(summary, "arms")
+    yield "smallest inner diameter", quantity(summary["inner_diameter_min_mm"], "mm", 2)
