@@ -64,7 +64,7 @@ class SolidMesh:
     """A distributed solid mesh of a wire with named groups.
 
     Attributes:
-        mesh: DOLFINx mesh of 27-node hexahedra or 10-node tetrahedra, mm.
+        mesh: DOLFINx mesh of 27-node hexahedra, mm.
         facet_tags: tags of the facets.
         groups: tag of each group of facets: ``bottom``, ``top`` (the two heads) and ``surface``.
         wire_diameter: d, mm.
@@ -87,12 +87,7 @@ class SolidMesh:
 
 
 def straight_wire(
-    diameter: float,
-    length: float,
-    layers: int,
-    comm: MPI.Comm,
-    grid: SectionGrid = GRID,
-    cell: str = "hexahedron",
+    diameter: float, length: float, layers: int, comm: MPI.Comm, grid: SectionGrid = GRID
 ) -> SolidMesh:
     """Mesh a straight wire along z; its bottom head is centred at the origin.
 
@@ -102,27 +97,23 @@ def straight_wire(
         layers: number of elements along the wire.
         comm: MPI communicator.
         grid: SectionGrid, the elements of the cross-section.
-        cell: ``hexahedron`` or ``tetrahedron``.
 
     Returns:
         SolidMesh.
 
     Raises:
-        InputError: a length that is not positive, no layers, or an unknown kind of cell.
+        InputError: a length that is not positive, or no layers.
     """
     for name, value in (("diameter", diameter), ("length", length)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{value} mm is not possible; give a positive length", name)
     if layers < 1:
         raise InputError(f"{layers} layers of elements are not possible; give at least 1", "layers")
-    if cell not in ("hexahedron", "tetrahedron"):
-        raise InputError(f"'{cell}' is unknown; give hexahedron or tetrahedron", "cell")
     gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
     try:
-        groups = gmsh_cylinder(0.5 * diameter, length, layers, grid, cell) if comm.rank == 0 else None
+        groups = gmsh_cylinder(0.5 * diameter, length, layers, grid) if comm.rank == 0 else None
         groups = comm.bcast(groups)
-        partitioner = unghosted()
-        mesh, _, facet_tags = mesh_from_gmsh(gmsh.model, comm, partitioner=partitioner)
+        mesh, _, facet_tags = mesh_from_gmsh(gmsh.model, comm, partitioner=unghosted())
     finally:
         gmsh.finalize()
     return SolidMesh(mesh, facet_tags, groups, diameter, length, mesh.geometry.x.copy(), lambda straight: straight)
@@ -136,7 +127,6 @@ def coil_section(
     layers: int,
     comm: MPI.Comm,
     grid: SectionGrid = GRID,
-    cell: str = "hexahedron",
 ) -> SolidMesh:
     """Mesh a section of a coil about the z axis: the straight mesh, every node mapped onto the helix.
 
@@ -148,7 +138,6 @@ def coil_section(
         layers: number of elements along the wire.
         comm: MPI communicator.
         grid: SectionGrid, the elements of the cross-section.
-        cell: ``hexahedron`` or ``tetrahedron``.
 
     Returns:
         SolidMesh.
@@ -163,6 +152,6 @@ def coil_section(
     if not 0 < degrees < np.inf:
         raise InputError(f"{degrees}° is not possible; give a positive angle", "degrees")
     helix = Helix(mean_diameter, pitch, degrees)
-    wire = straight_wire(wire_diameter, helix.length, layers, comm, grid, cell)
+    wire = straight_wire(wire_diameter, helix.length, layers, comm, grid)
     wire.mesh.geometry.x[:] = helix.place(wire.straight)
     return replace(wire, place=helix.place)

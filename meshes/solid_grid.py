@@ -15,23 +15,15 @@ class SectionGrid:
     Attributes:
         core: elements along a side of the core; there are 4 · core elements around the surface.
         rings: elements from the core to the surface.
-        core_size: distance of the core's corners from the centre, over the wire radius.
-        grading: thickness of each ring over that of the ring inside it.
     """
 
     core: int = 4
     rings: int = 3
-    core_size: float = 0.5
-    grading: float = 1.0
 
     def __post_init__(self) -> None:
         """Reject values that do not define a grid."""
         if self.core < 1 or self.rings < 1:
             raise InputError(f"core {self.core} and rings {self.rings} must be at least 1", "grid")
-        if not 0 < self.core_size < 1:
-            raise InputError(f"{self.core_size} must be between 0 and 1", "grid.core_size")
-        if not 0 < self.grading < np.inf:
-            raise InputError(f"{self.grading} is not possible; give a positive ratio of thicknesses", "grid.grading")
 
     @property
     def cells(self) -> int:
@@ -39,17 +31,17 @@ class SectionGrid:
         return self.core * self.core + 4 * self.core * self.rings
 
 
+CORE = 0.5  # distance of the core's corners from the centre, over the wire radius
 # The sides of the core bulge outwards by this fraction of their length, which evens out the angles at its corners.
 BULGE = 0.08
 
 
-def gmsh_disk(radius: float, grid: SectionGrid, recombine: bool) -> list[int]:
+def gmsh_disk(radius: float, grid: SectionGrid) -> list[int]:
     """Draw the O-grid of a disk in the plane z = 0 of the current gmsh model.
 
     Args:
         radius: of the wire, mm.
         grid: SectionGrid.
-        recombine: quadrilaterals instead of triangles.
 
     Returns:
         Tags of the five surfaces, the core first.
@@ -57,7 +49,7 @@ def gmsh_disk(radius: float, grid: SectionGrid, recombine: bool) -> list[int]:
     occ, mesh = gmsh.model.occ, gmsh.model.mesh
     angle = np.pi / 4 + np.pi / 2 * np.arange(4)
     ring = [occ.addPoint(radius * np.cos(φ), radius * np.sin(φ), 0) for φ in angle]
-    inner = grid.core_size * radius
+    inner = CORE * radius
     core = [occ.addPoint(inner * np.cos(φ), inner * np.sin(φ), 0) for φ in angle]
     half = inner / np.sqrt(2)
     sagitta = 2 * half * BULGE
@@ -79,30 +71,27 @@ def gmsh_disk(radius: float, grid: SectionGrid, recombine: bool) -> list[int]:
     for curve in (*arcs, *sides):
         mesh.setTransfiniteCurve(curve, grid.core + 1)
     for curve in rays:
-        mesh.setTransfiniteCurve(curve, grid.rings + 1, "Progression", grid.grading)
+        mesh.setTransfiniteCurve(curve, grid.rings + 1)
     for surface in surfaces:
         mesh.setTransfiniteSurface(surface)
-        if recombine:
-            mesh.setRecombine(2, surface)
+        mesh.setRecombine(2, surface)
     return surfaces
 
 
-def gmsh_cylinder(radius: float, length: float, layers: int, grid: SectionGrid, cell: str) -> dict[str, int]:
+def gmsh_cylinder(radius: float, length: float, layers: int, grid: SectionGrid) -> dict[str, int]:
     """Mesh a straight wire along z in the current gmsh model with second-order elements.
 
     Args:
         radius, length: mm.
         layers: elements along the wire.
         grid: SectionGrid.
-        cell: ``hexahedron`` or ``tetrahedron``.
 
     Returns:
         Tags of the named groups of facets: ``bottom``, ``top``, ``surface``.
     """
     gmsh.model.add("wire")
-    hexahedra = cell == "hexahedron"
-    bottom = gmsh_disk(radius, grid, hexahedra)
-    extruded = gmsh.model.occ.extrude([(2, tag) for tag in bottom], 0, 0, length, [layers], recombine=hexahedra)
+    bottom = gmsh_disk(radius, grid)
+    extruded = gmsh.model.occ.extrude([(2, tag) for tag in bottom], 0, 0, length, [layers], recombine=True)
     gmsh.model.occ.synchronize()
     volumes = [tag for dim, tag in extruded if dim == 3]
     skin = [tag for _, tag in gmsh.model.getBoundary([(3, tag) for tag in volumes], oriented=False)]

@@ -9,23 +9,18 @@ from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs.geometry import Spring
 
 STATIONS_PER_TURN = 64
-CORNERS = 96  # of the outline of a wire that is not round
+SIDES, CORNERS = 32, 96  # of the section of round wire, and of the outline of a wire that is not round
 
 
-def tube(spring: Spring, sides: int = 32) -> pv.PolyData:
-    """The wire's surface as a `pyvista.PolyData` that carries the turn as data.
-
-    Args:
-        spring: `Spring`.
-        sides: number of corners of the cross-section.
-    """
+def tube(spring: Spring) -> pv.PolyData:
+    """The wire's surface as a `pyvista.PolyData` that carries the turn as data."""
     first, last = spring.corners[[0, -1]]
     turns = np.linspace(first, last, int(np.ceil(STATIONS_PER_TURN * (last - first))) + 1)
     if spring.section is not None:
         return _cut(_outlined(spring, spring.section, turns), spring)
     line = pv.PolyData(spring.centre_line(turns), lines=[len(turns), *range(len(turns))])
     line["turn"], line["radius"] = turns, 0.5 * spring.wire_diameter(turns)
-    return _cut(line.tube(scalars="radius", absolute=True, n_sides=sides, capping=True), spring)
+    return _cut(line.tube(scalars="radius", absolute=True, n_sides=SIDES, capping=True), spring)
 
 
 def _outlined(spring: Spring, section: Boundary, turns: np.ndarray) -> pv.PolyData:

@@ -30,3 +30,17 @@ def levels(low: float, high: float) -> np.ndarray:
     """Round numbers for the contours of values; about zero, as `-high` to `high`, symmetric."""
     steps = [1, 2, 2.5, 5, 10]
     return MaxNLocator(20, steps=steps, symmetric=low == -high).tick_values(low, max(high, low + 1e-9))
+
+
+def colour_bar(title: str, letters: tuple[int, int], across: tuple[float, float], up: tuple[float, float]) -> dict:
+    """A scale of colours in a view of pyvista; an empty line separates its title from the numbers.
+
+    Args:
+        title: of the scale.
+        letters: sizes of the title and of the numbers.
+        across, up: where it begins, and how long and how high it is, over the picture's width and height.
+    """
+    looks = {"color": "black", "n_labels": 5, "fmt": "%.5g"}
+    sizes = {"title_font_size": letters[0], "label_font_size": letters[1]}
+    place = {"position_x": across[0], "width": across[1], "position_y": up[0], "height": up[1]}
+    return {"title": f"{title}\n", **looks, **sizes, **place}

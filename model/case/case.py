@@ -335,15 +335,6 @@ class Case(Strict):
         SheetSpec | None, Field(description="head of the data sheet by `coilset sheet --out sheet.pdf`")
     ] = None
 
-    @model_validator(mode="before")
-    @classmethod
-    def _accuracy_of_loading(cls, data: Any) -> Any:
-        """`loading: {accuracy: 0.2 %, program: [...]}` gives both in one group."""
-        loading = data.get("loading") if isinstance(data, dict) else None
-        if not isinstance(loading, dict) or not loading.keys() <= {"accuracy", "program"}:
-            return data
-        return data | {"loading": loading.get("program")} | {k: v for k, v in loading.items() if k == "accuracy"}
-
     @field_validator("material")
     @classmethod
     def _from_folder(cls, material: str | NamedWire, info: ValidationInfo) -> str | NamedWire:

@@ -145,11 +145,6 @@ NewtonMillimetres = Annotated[
     Annotated[float, Unit("N mm"), Tag("(number)")] | Annotated[OverTravel, Tag("(table)")], Discriminator(_form)
 ]
 """A number, or a table of it over the travel."""
-TwoMillimetres = Annotated[list[Millimetres], Field(strict=False, min_length=2, max_length=2)]
-TwoDegrees = Annotated[list[Degrees], Field(strict=False, min_length=2, max_length=2)]
-TwoNewtons = Annotated[list[Newtons], Field(strict=False, min_length=2, max_length=2)]
-TwoNewtonMillimetres = Annotated[list[NewtonMillimetres], Field(strict=False, min_length=2, max_length=2)]
-"""Such values about or along x and y."""
 
 
 class HeadTarget(Strict):

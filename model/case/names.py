@@ -7,8 +7,6 @@ from typing import Any
 from coilset.model.case.case import Case
 from coilset.model.case.reference import entry_unit
 
-PROGRAM = "program"  # `loading: {accuracy: …, program: […]}` holds its phases one level deeper
-
 
 @dataclass(frozen=True)
 class EntryName:
@@ -35,9 +33,8 @@ def entry_name(entry: str, case: Mapping[str, Any] | None = None) -> EntryName:
         entry: its path, such as `spring.pitch.values.2`.
         case: raw data of the case, which gives the turns of a table; without it their number in the table is named.
     """
-    first, *rest = [part for part in entry.split(".") if part != PROGRAM]
-    path = ".".join([first, *rest])
-    return EntryName(_words(first, rest, case or {}).replace("_", " "), entry_unit(Case, path))
+    first, *rest = entry.split(".")
+    return EntryName(_words(first, rest, case or {}).replace("_", " "), entry_unit(Case, entry))
 
 
 def _words(first: str, rest: list[str], case: Mapping[str, Any]) -> str:

@@ -75,15 +75,10 @@ class Group:
     places: list[str] = field(default_factory=list)
 
 
-def groups(model: type, place: str = "") -> list[Group]:
-    """The group of a class and all groups in it, each once, in the order in which a reader meets them.
-
-    Args:
-        model: a model of pydantic, or a dataclass.
-        place: path of entries that leads to it; empty for a whole file.
-    """
+def groups(model: type) -> list[Group]:
+    """The group of a class, of pydantic or a dataclass, and all groups in it, each once, in the order of a reader."""
     found: dict[type, Group] = {}
-    _visit(model, place, found)
+    _visit(model, "", found)
     return list(found.values())
 
 

@@ -109,8 +109,6 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
     """
     data = copy.deepcopy(dict(base))
     program = data["loading"]
-    if isinstance(program, dict):  # {accuracy: …, program: […]}
-        program = program["program"]
     found = [one for name, value in _results(spec.such_that) for one in _conditions(f"{GROUP}{name}", value)]
     numbers = spec.such_that.working
     found += [one for name, value in numbers.items() for one in _conditions(f"{GROUP}working.{name}", value)]

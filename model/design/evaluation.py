@@ -109,7 +109,7 @@ class Evaluator:
             put(data, name, copy.deepcopy(value), f"trade_offs.{name}")
         for (name, unknown), value in zip(self.design.spec.find.items(), x, strict=True):
             unknown.put(name, float(value), data)
-        program = data["loading"]["program"] if isinstance(data["loading"], dict) else data["loading"]
+        program = data["loading"]
         for phase, marks in zip(program, plan or (None,) * len(program), strict=True):
             if marks is not None:
                 phase["steps"] = list(marks)

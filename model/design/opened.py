@@ -71,7 +71,7 @@ def _searched(design: dict[str, Any], records: list[dict[str, Any]]) -> xr.Datas
         data[name] = ("evaluation", [record["x"][place] for record in records], units)
         data[f"found_{name}"] = ((), value, units)
     for place, one in enumerate(design["conditions"]):
-        column = [_number(record["values"][place : place + 1]) for record in records]
+        column = [_number(next(iter(record["values"][place:]), None)) for record in records]  # failed: one
         of = {"units": one["unit"], "target" if one["kind"] == "equals" else one["kind"]: one["target"]}
         name = without_limit(one["name"]).removeprefix(GROUP)
         data[name] = ("evaluation", column, (data[name].attrs if name in data else {}) | of)
@@ -85,16 +85,16 @@ def _add_trade_offs(data: xr.Dataset, design: dict[str, Any]) -> None:
     rows = design["trade_offs"]
     if not rows:
         return
-    for name in ("of", "value"):
-        data["changed" if name == "of" else "changed_to"] = ("trade_off", [str(row[name]) for row in rows])
+    for name, of in (("changed", "of"), ("changed_to", "value")):
+        data[name] = ("trade_off", [str(row[of]) for row in rows])
     data["possible"] = ("trade_off", [bool(row["possible"]) for row in rows])
     for name in design["found"]:
-        column = [_number([row["unknowns"][name]]) for row in rows]
+        column = [_number(row["unknowns"][name]) for row in rows]
         data[f"estimate_{name}"] = ("trade_off", column, {"units": design["unknowns"][name]["unit"] or "1"})
     for name in ("wire_length_mm", "free_length_before_mm"):
-        data[f"estimate_{name}"] = ("trade_off", [_number([row[name]]) for row in rows], {"units": unit_of(name)})
+        data[f"estimate_{name}"] = ("trade_off", [_number(row[name]) for row in rows], {"units": unit_of(name)})
 
 
-def _number(values: list[float | None]) -> float:
+def _number(value: float | None) -> float:
     """NaN for none."""
-    return float("nan") if not values or values[0] is None else float(values[0])
+    return float("nan") if value is None else float(value)

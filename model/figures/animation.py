@@ -7,7 +7,7 @@ import pyvista as pv
 from PIL import Image
 
 from coilset.model.base.errors import CoilsetError
-from coilset.model.base.style import DIVERGING, QUARTERED, round_end
+from coilset.model.base.style import DIVERGING, QUARTERED, colour_bar, round_end
 from coilset.model.figures.display import ensure
 from coilset.model.figures.scene import ABOVE
 from coilset.model.figures.wire_surface import closed, frames, tubes
@@ -52,18 +52,7 @@ def _draw(labels: tuple[str, ...], places: np.ndarray, stress: np.ndarray) -> li
         plotter.set_background("white")
         wire = pv.StructuredGrid(*np.moveaxis(places[0], -1, 0))
         wire["MPa"] = stress[0].ravel(order="F")
-        bar = {
-            "title": f"{BAR}\n",
-            "color": "black",
-            "n_labels": 5,
-            "fmt": "%.5g",
-            "title_font_size": 14,
-            "label_font_size": 13,
-            "position_x": 0.2,
-            "width": 0.6,
-            "position_y": 0.02,
-            "height": 0.12,
-        }
+        bar = colour_bar(BAR, (14, 13), (0.2, 0.6), (0.02, 0.12))
         plotter.add_mesh(
             wire, scalars="MPa", clim=(-end, end), cmap=DIVERGING, smooth_shading=False, scalar_bar_args=bar, **LIGHT
         )

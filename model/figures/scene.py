@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyvista as pv
 import pyvista.plotting
 
-from coilset.model.base.style import DIVERGING, ROUND, SEQUENTIAL, round_end
-from coilset.model.figures.wire_surface import closed, coil_turns, inside, loading_stress, outline, surface
+from coilset.model.base.style import DIVERGING, SEQUENTIAL, colour_bar, round_end
+from coilset.model.figures.wire_surface import Frames, closed, loading_stress, tubes
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
@@ -66,19 +65,17 @@ def springs(path: str | Path, run: Run) -> None:
     data, snapshots = run.data, chosen(run.data["force"].values)
     radius, positions = data["wire_radius"].values, data["position"].values[snapshots]
     rings = RINGS_PER_ELEMENT * len(radius) + 1
-    shears = loading[snapshots].mean(axis=2)
-    wires = [
-        surface(data["turn"].values, x, radius, shear, inside(run), rings, outline(run), coil_turns(run))
-        for x, shear in zip(positions, shears, strict=True)
-    ]
+    shown = Frames(tuple(caption(run, number) for number in snapshots), positions, loading[snapshots].mean(axis=2))
+    places, stresses = closed(*tubes(run, shown, rings))
     x = positions.reshape(-1, 3)
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
     across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
     aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
     view = Arrangement.of(across, high - low, len(snapshots))
-    end = round_end(max(float(np.abs(stress).max()) for _, stress in wires), ROUND)
+    end = round_end(float(np.abs(stresses).max()))
     signed = loading.min() < 0.0
     middle = aside + 0.5 * view.column * (len(snapshots) - 1)
+    bar = colour_bar(name, (17, 16), (0.3, 0.4), (12 / view.height, (BAR - 28.0) / view.height))  # one size in pixels
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, view.height))
     plotter.set_background("white")
     arbor = run.case.get("contact", {}).get("arbor")
@@ -91,21 +88,20 @@ def springs(path: str | Path, run: Run) -> None:
         if ends is not None:
             first, last = ends + np.array([place * view.column, 0.0, 0.0])
             plotter.add_mesh(pv.Tube(first, last, radius=LINE * across), color="black")
-        places, stress = closed(*(one[None] for one in wires[place]))
-        mesh = pv.StructuredGrid(*np.moveaxis(places[0] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
-        mesh[name] = stress[0].ravel(order="F")
+        mesh = pv.StructuredGrid(*np.moveaxis(places[place] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
+        mesh[name] = stresses[place].ravel(order="F")
         plotter.add_mesh(
             mesh,
             scalars=name,
             clim=(-end if signed else 0.0, end),
             cmap=DIVERGING if signed else SEQUENTIAL,
             smooth_shading=True,
-            scalar_bar_args=_bar(view, name),
+            scalar_bar_args=bar,
         )
         foot = [aside + place * view.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / view.scale)]
         plotter.add_point_labels(
             [foot],
-            [caption(run, number)],
+            [shown.labels[place]],
             font_size=20,
             text_color="black",
             shape=None,
@@ -149,20 +145,3 @@ def caption(run: Run, number: int) -> str:
     height, force = (float(run.data[name].values[number]) for name in ("height", "force"))
     force = force if abs(force) > 1e-6 * float(np.abs(run.data["force"].values).max()) else 0.0
     return f"{run.snapshots[number]}\n{plain(height, 5)} mm, {plain(force)} N"
-
-
-def _bar(view: Arrangement, title: str) -> dict[str, Any]:
-    """The colour bar, of the same size in all pictures; an empty line separates its title from the numbers."""
-    bar = BAR - 28.0
-    return {
-        "title": f"{title}\n",
-        "color": "black",
-        "n_labels": 5,
-        "fmt": "%.5g",
-        "title_font_size": 17,
-        "label_font_size": 16,
-        "position_x": 0.3,
-        "width": 0.4,
-        "position_y": 12 / view.height,
-        "height": bar / view.height,
-    }

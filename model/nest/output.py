@@ -58,19 +58,16 @@ def write(folder: Path, pressed: Pressed, force: bool = False, pictures: bool = 
     for member in pressed.members:
         if member.result is not None:
             make(folder / member.name)
-            own = summarise(member.setup, member.result)
-            write_run(folder / member.name, member.setup, member.result, own, origin(member.case))
-    write_steps(folder / STEPS, pressed)
+            own = {name: value for name, value in found[member.name].items() if name != "origin"}
+            write_run(folder / member.name, member.setup, member.result, own, found[member.name]["origin"])
+    values = pressed.plan.heights, pressed.force, *pressed.forces, pressed.clearance
+    rows = enumerate(zip(*(column.tolist() for column in values), strict=True))
+    write_table(folder / STEPS, COLUMNS, ([number, *row] for number, row in rows))
     if pictures:
-        draw(folder / "characteristic.png", pressed, found)
+        columns = dict(zip(COLUMNS[1:], values, strict=True))
+        write_png(folder / "characteristic.png", [characteristic(columns, found)])
     write_summary(folder, found)
     return found
-
-
-def write_steps(path: Path, pressed: Pressed) -> None:
-    """nest.csv: one row a step of the seats, the start first."""
-    rows = zip(pressed.plan.heights, pressed.force, *pressed.forces, pressed.clearance, strict=True)
-    write_table(path, COLUMNS, ([number, *(float(value) for value in row)] for number, row in enumerate(rows)))
 
 
 def headline(found: Mapping[str, Any]) -> str:
@@ -106,9 +103,3 @@ def characteristic(columns: Mapping[str, np.ndarray], found: Mapping[str, Any]) 
         height=440,
         note="Both springs are then released, each on its own; their pages show it.",
     )
-
-
-def draw(path: Path, pressed: Pressed, found: dict[str, Any]) -> None:
-    """characteristic.png."""
-    values = (pressed.plan.heights, pressed.force, *pressed.forces)
-    write_png(path, [characteristic(dict(zip(COLUMNS[1:], values, strict=False)), found)])

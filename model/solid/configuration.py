@@ -9,9 +9,8 @@ from dolfinx import mesh as dmesh
 from coilset.model.base.compat import geometry_dofs
 
 # The elements: 20-node hexahedra with 2 x 2 x 2 points, which neither lock in plastic flow nor have zero-energy modes
-# in any patch of 2 x 2 x 2 elements or more; 10-node tetrahedra with 4 points.
-FAMILY = {"hexahedron": "S", "tetrahedron": "P"}
-QUADRATURE_DEGREE = {"hexahedron": 3, "tetrahedron": 2}
+# in any patch of 2 x 2 x 2 elements or more.
+FAMILY, QUADRATURE_DEGREE = "S", 3
 
 
 class Configuration:
@@ -25,15 +24,11 @@ class Configuration:
         V: vector displacement space of second order.
         x: coefficients of the position at the last equilibrium, shape (blocks with ghosts, 3), mm.
         start: positions of the geometry's nodes at the start, shape (nodes, 3), mm.
-        quadrature_degree: degree of the quadrature whose points carry the state.
     """
 
     def __init__(self, mesh: dmesh.Mesh) -> None:
         self.mesh = mesh
-        cell = mesh.basix_cell().name
-        self.quadrature_degree = QUADRATURE_DEGREE[cell]
-        element = basix.ufl.element(FAMILY[cell], cell, 2, shape=(3,))
-        self.V = fem.functionspace(mesh, element)
+        self.V = fem.functionspace(mesh, basix.ufl.element(FAMILY, "hexahedron", 2, shape=(3,)))
         self._nodes = _node_matrix(mesh, self.V)
         position = fem.Function(self.V)
         position.interpolate(lambda x: x)

@@ -9,7 +9,7 @@ import ufl
 from dolfinx import fem
 from ufl.core.expr import Expr
 
-from coilset.model.solid.configuration import Configuration
+from coilset.model.solid.configuration import QUADRATURE_DEGREE, Configuration
 
 # Order of the six components: 11, 22, 33, 12, 13, 23; shear strains are doubled.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
@@ -38,7 +38,7 @@ class SolidForms:
     """
 
     def __init__(self, configuration: Configuration) -> None:
-        V, mesh, degree = configuration.V, configuration.mesh, configuration.quadrature_degree
+        V, mesh, degree = configuration.V, configuration.mesh, QUADRATURE_DEGREE
         cell = mesh.basix_cell()
         points = lambda shape: fem.functionspace(  # noqa: E731
             mesh, basix.ufl.quadrature_element(cell.name, value_shape=shape, degree=degree)

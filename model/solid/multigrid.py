@@ -2,7 +2,7 @@
 
 Smoothed aggregation directly on the quadratic basis needs more iterations, with aggregates too small for six rigid
 modes. The vertex space is nested in the quadratic one: a function that is linear along the edges has, on each edge, a
-mean (hexahedra) or a mid-edge value (tetrahedra) of half the sum of its values at the ends of the edge.
+mean of half the sum of its values at the ends of the edge.
 """
 
 import basix

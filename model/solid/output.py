@@ -9,23 +9,11 @@ import numpy as np
 import pyvista
 
 from coilset.model.base.compat import geometry_dofs
-from coilset.model.base.style import QUARTERED, round_end
+from coilset.model.base.style import QUARTERED, colour_bar, round_end
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.grid_file import write_grid
 from coilset.model.solid.continuum import mises
 from coilset.model.solid.solid import Solid
-
-BAR = {
-    "color": "black",
-    "n_labels": 5,
-    "fmt": "%.5g",
-    "title_font_size": 22,
-    "label_font_size": 18,
-    "position_x": 0.2,
-    "width": 0.6,
-    "position_y": 0.02,
-    "height": 0.16,
-}
 
 
 def at_nodes(solid: Solid, values: np.ndarray) -> np.ndarray:
@@ -104,7 +92,7 @@ def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str,
         plotter.subplot(0, column)
         half = body.tessellate(max_n_subdivide=2).clip(normal=(0, -1, 0), origin=(0, 1e-3, 0))
         half = half.connectivity("largest")  # without the part of the turn's other end on this side
-        bar = {"title": f"{field} in {unit}\n", **BAR}
+        bar = colour_bar(f"{field} in {unit}", (22, 18), (0.2, 0.6), (0.02, 0.16))
         plotter.add_mesh(half, scalars=field, clim=(0.0, end), cmap="viridis", ambient=0.3, scalar_bar_args=bar)
         plotter.add_text(name, position=(0.42, 0.9), viewport=True, font_size=13, color="black")
         plotter.camera.parallel_projection = True

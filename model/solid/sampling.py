@@ -15,7 +15,7 @@ from coilset.model.solid.continuum import tensors
 from coilset.model.solid.solid import Solid
 
 Patches = tuple[np.ndarray, np.ndarray]  # points of each patch and their weights
-NEIGHBOURS = 16  # integration points of a patch in each of the four planes of points about the section
+NEIGHBOURS = 4 * 16  # integration points of a patch, in the four planes of points about the section
 
 
 class SectionSample:
@@ -41,10 +41,9 @@ class SectionSample:
         places = np.einsum("qb,cbi->cqi", element.tabulate(0, solid.forms.points)[0, :, :, 0], straight[self._cells])
         self._shape = solid.V.element.basix_element.tabulate(0, solid.forms.points)[0, :, :, 0]
         places = self._gather(places) - [0.0, 0.0, section]
-        planes = 4 if solid.n_points == 8 else 8
         ring = np.stack(disk_grid(0.4 * solid.wire.wire_diameter, 2, 8), axis=1)  # shows the section's orientation
-        self._patches = _patches(places, np.stack([self.y, self.z], axis=1), planes * NEIGHBOURS)
-        self._ring = _patches(places, ring, planes * NEIGHBOURS)
+        self._patches = _patches(places, np.stack([self.y, self.z], axis=1))
+        self._ring = _patches(places, ring)
         self._start, self._axes = self._positions(self._ring), _axes(solid.wire, section)
 
     def _gather(self, values: np.ndarray) -> np.ndarray:
@@ -81,10 +80,6 @@ class SectionSample:
         axes = self.frame()[1]
         return np.einsum("nij,i,jk->nk", σ, axes[:, 0], axes)
 
-    def point_state(self, entry: int) -> np.ndarray:
-        """An entry of the point state, for instance 12 for the plastic work b*, shape (n,)."""
-        return self._recover(self.solid.point_state[self._cells, :, entry], self._patches)
-
 
 def disk_grid(radius: float, rings: int = 8, spokes: int = 24) -> tuple[np.ndarray, np.ndarray]:
     """Positions y, z of a polar grid on the wire's disk, centre first, surface included, each of shape (n,), mm."""
@@ -103,19 +98,19 @@ def _axes(wire: SolidMesh, section: float) -> np.ndarray:
     return np.stack([np.cross(outward, second), outward, second], axis=1)
 
 
-def _patches(places: np.ndarray, samples: np.ndarray, size: int) -> Patches:
+def _patches(places: np.ndarray, samples: np.ndarray) -> Patches:
     """Nearest points of each sample in the section's plane, and their weights in the sample's least-squares value.
 
     Args:
         places: y, z, s of the points, s measured from the section, shape (points, 3), mm.
         samples: y, z, shape (n, 2), mm.
-        size: points per patch; more if several are equally far as the last one.
 
     Returns:
-        Indices and weights, each of shape (n, 2 size); the weights are 0 outside of the patch.
+        Indices and weights, each of shape (n, 2 NEIGHBOURS); the weights are 0 outside of the patch, which has more
+        than NEIGHBOURS points if several are equally far as the last one.
     """
-    distance, points = cKDTree(places[:, :2]).query(samples, k=min(2 * size, len(places)))
-    reach = distance[:, size - 1 : size]
+    distance, points = cKDTree(places[:, :2]).query(samples, k=min(2 * NEIGHBOURS, len(places)))
+    reach = distance[:, NEIGHBOURS - 1 : NEIGHBOURS]
     # all that are equally far as the last one belong to the patch: which one comes first depends on the partition
     weight = np.where(distance < (1 + 1e-6) * reach, np.exp(-2 * (distance / reach) ** 2), 0.0)
     y, z = np.moveaxis((places[points, :2] - samples[:, None]) / reach[:, :, None], 2, 0)

@@ -23,16 +23,16 @@ class Solid(Continuum):
     Args:
         wire: SolidMesh; its mesh will move with the body.
         points: the law at the points.
-        symmetric: keep only the symmetric part of the moduli, for solvers that require it.
 
     Attributes:
+        symmetric: whether to keep only the symmetric part of the moduli, for solvers that require it.
         wire, configuration, forms: mesh, positions, UFL forms.
         increment: function of the displacement increment, mm; u are its coefficients, shape (blocks with ghosts, 3).
         seconds: time spent at the points (`points`) and in assembling the tangent (`assembly`).
     """
 
-    def __init__(self, wire: SolidMesh, points: MaterialPoints, symmetric: bool = False) -> None:
-        self.wire, self.symmetric = wire, symmetric
+    def __init__(self, wire: SolidMesh, points: MaterialPoints) -> None:
+        self.wire, self.symmetric = wire, False
         self.configuration = Configuration(wire.mesh)
         self.forms = SolidForms(self.configuration)
         self.comm, self.V = wire.mesh.comm, self.configuration.V

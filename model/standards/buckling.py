@@ -39,19 +39,16 @@ def critical_travel(
     return length * 0.5 / γ * (1 - sqrt(under_root)) if under_root >= 0 else inf
 
 
-def buckling_travel(
-    spring: Spring, modulus_ratio: float = STEEL.shear_modulus / STEEL.young_modulus, seating: float = SEATING
-) -> float:
-    """Travel at which a spring buckles by `critical_travel`, mm; infinite if it never does.
+def buckling_travel(spring: Spring, modulus_ratio: float = STEEL.shear_modulus / STEEL.young_modulus) -> float:
+    """Travel at which a spring buckles between parallel seats by `critical_travel`, mm; infinite if it never does.
 
     Args:
         spring: `Spring`; its minimum mean diameter is used.
         modulus_ratio: G/E.
-        seating: ν of the standard, 0.5 for ends on parallel guided seats, 2 for one free end.
     """
     diameter = 2 * float(np.min(spring.mean_radius(spring.breaks)))
     if spring.section is not None:
         wire = WireNumbers.of(spring.section, float(spring.wire_diameter(0.5 * spring.turns)), diameter)
         bending, shear = wire.buckling_ratios(modulus_ratio)
-        return critical_travel(spring.free_length, diameter, bending, seating, shear)
-    return critical_travel(spring.free_length, diameter, modulus_ratio, seating)
+        return critical_travel(spring.free_length, diameter, bending, shear=shear)
+    return critical_travel(spring.free_length, diameter, modulus_ratio)

@@ -16,30 +16,29 @@ from coilset.model.run.analysis import Analysis
 STATES = "end, block, block-3mm, height=30, travel=5 or force=100"
 
 
-def after_run(case: Case, at: str = "end", comm: MPI.Comm = MPI.COMM_WORLD) -> Analysis:
+def after_run(case: Case, at: str = "end") -> Analysis:
     """The analysis of a case after its load program, gone on to a state; collective.
 
     Args:
         case: Case.
         at: `end`, the end of the load program; or where the spring goes from there: `block`, so many mm short of it, or
             `height=`, `travel=` (mm, since the start) or `force=` (N).
-        comm: communicator of the ranks that share the spring.
 
     Raises:
         InputError: the state has no meaning, or the spring cannot be built.
         SolveError: no equilibrium was found.
     """
-    analysis = Analysis(_gone_on(case, at), comm, detailed=False, estimates=False)
+    analysis = Analysis(_gone_on(case, at), detailed=False, estimates=False)
     analysis.run()
     return analysis
 
 
-def after_results(folder: str | Path, at: str = "end", comm: MPI.Comm = MPI.COMM_WORLD) -> Analysis:
+def after_results(folder: str | Path, at: str = "end") -> Analysis:
     """The analysis of a results folder, from its checkpoint gone on to a state; collective.
 
     Args:
         folder: results of `coilset solve`, with their checkpoint.
-        at, comm: as for `after_run`.
+        at: as for `after_run`.
 
     Raises:
         InputError: there are no such results, the run is not complete, or the state has no meaning.
@@ -47,8 +46,8 @@ def after_results(folder: str | Path, at: str = "end", comm: MPI.Comm = MPI.COMM
     """
     run: Case = check(open_run(folder).case, Path("case"))
     case = _gone_on(run, at)
-    saved = _saved(Path(folder), case, comm)
-    analysis = Analysis(case, comm, detailed=False, estimates=False)
+    saved = _saved(Path(folder), case)
+    analysis = Analysis(case, detailed=False, estimates=False)
     if saved.position.stage < len(run.loading):
         raise InputError("the run did not reach its end; continue it by solve --resume first", "", folder)
     analysis.resume(saved)
@@ -57,7 +56,7 @@ def after_results(folder: str | Path, at: str = "end", comm: MPI.Comm = MPI.COMM
     return analysis
 
 
-def _saved(folder: Path, case: Case, comm: MPI.Comm) -> Saved:
+def _saved(folder: Path, case: Case) -> Saved:
     """The checkpoint of the finest run of this case in a folder; collective."""
     refusal: InputError | None = None
     for number in range(len(list(folder.glob("checkpoint-*"))), -1, -1):
@@ -67,7 +66,7 @@ def _saved(folder: Path, case: Case, comm: MPI.Comm) -> Saved:
         if not checkpoint.state.path.exists():
             continue
         try:
-            return checkpoint.load(comm)
+            return checkpoint.load(MPI.COMM_WORLD)
         except InputError as error:  # of a run that was coarser, or discarded
             refusal = refusal or error
     assert refusal is not None

@@ -16,7 +16,6 @@ TABLE = {"turns": [0, 2, 3.5, 6], "values": [7.0, 7.0, 13.0, 13.0], "interpolati
         ("spring.mean_diameter.middle", "mean diameter, middle, mm"),
         ("spring.turns", "turns"),
         ("loading.1.to.height", "height of phase 2, mm"),
-        ("loading.program.1.to.height", "height of phase 2, mm"),
         ("mesh.elements_per_turn", "elements per turn"),
         ("rates_at.0", "rates at, number 1, mm"),
         ("material", "material"),

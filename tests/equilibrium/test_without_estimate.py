@@ -51,7 +51,7 @@ def test_equal_steps_find_the_same_to_the_last_bit(example):
 
 
 @pytest.mark.parametrize(
-    "settings", [[f"loading={{accuracy: none, program: {PROGRAM}}}"], [NONE, "loading=[{to: block, steps: [0.5, 1]}]"]]
+    "settings", [[NONE, f"loading={PROGRAM}"], [NONE, "loading=[{to: block, steps: [0.5, 1]}]"]]
 )
 def test_all_phases_give_their_steps(example, settings):
     case = read_case(example, settings)
