@@ -86,9 +86,7 @@ class SolidMesh:
         return self.facet_tags.find(self.groups[group])
 
 
-def straight_wire(
-    diameter: float, length: float, layers: int, comm: MPI.Comm, grid: SectionGrid = GRID
-) -> SolidMesh:
+def straight_wire(diameter: float, length: float, layers: int, comm: MPI.Comm, grid: SectionGrid = GRID) -> SolidMesh:
     """Mesh a straight wire along z; its bottom head is centred at the origin.
 
     Args:

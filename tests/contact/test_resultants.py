@@ -80,18 +80,17 @@ def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     """On level seats the pressure, times the length each point bears with, is the axial force while the tip bears; a
     thin tip lifts off soon, and its soft spring then pulls with some 1e-6 of it."""
     analysis, _ = example_runs["closed_and_ground"]
-    data = pressure_along_wire(analysis.setup, analysis.result).to_xarray()
+    data = pressure_along_wire(analysis.setup, analysis.result)
     seat = analysis.system.contacts[1]
-    assert list(data.contact.values) == ["coils", "bottom seat", "top seat"]
-    place = np.searchsorted(seat.points.turns, data.wire_turn.values)
+    turns, on_seat = data.coordinates["wire_turn"].values, data.variables["pressure"].values[:, 1]
+    assert data.coordinates["contact"].values.tolist() == ["coils", "bottom seat", "top seat"]
+    place = np.searchsorted(seat.points.turns, turns)
     lengths = seat.lengths[place]
     for k in range(6):
-        pressure = data.pressure.sel(contact="bottom seat").values[k]
-        tip_bears = pressure[data.wire_turn.values == 0.0].any()
+        tip_bears = on_seat[k, turns == 0.0].any()
         expected = analysis.result.seats[k].bottom.force_N
-        assert float(pressure @ lengths) == pytest.approx(expected, rel=1e-9 if tip_bears else 5e-6)
-    bears = data.pressure.sel(contact="bottom seat").values[2] > 0
-    assert data.wire_turn.values[bears].max() < 1.1  # the end coil of one turn
+        assert float(on_seat[k] @ lengths) == pytest.approx(expected, rel=1e-9 if tip_bears else 5e-6)
+    assert turns[on_seat[2] > 0].max() < 1.1  # the end coil of one turn
     write_seats(tmp_path, analysis.result.seats)
     rows = list(csv.DictReader((tmp_path / "seats.csv").read_text().splitlines()))
     assert len(rows) == len(analysis.result.steps)

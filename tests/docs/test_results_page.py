@@ -56,9 +56,9 @@ def test_summary(run):
 def test_points(run):
     setup, result = run
     x = result.snapshots[0].x
-    data = point_state(setup, replace(result, mode=BucklingMode(1.0, 9.0, 0.5, x, 0.0 * x))).to_xarray()
-    assert sorted(rows("points.nc")) == sorted(data.data_vars)
-    assert sorted(rows("points.nc", "coordinate")) == sorted(data.coords)
+    data = point_state(setup, replace(result, mode=BucklingMode(1.0, 9.0, 0.5, x, 0.0 * x)))
+    assert sorted(rows("points.nc")) == sorted(data.variables)
+    assert sorted(rows("points.nc", "coordinate")) == sorted(data.coordinates)
 
 
 def test_warnings():

@@ -50,9 +50,7 @@ def test_equal_steps_find_the_same_to_the_last_bit(example):
     assert next(one.remark for one in answer(summary) if one.term == "maximum force").endswith("not estimated")
 
 
-@pytest.mark.parametrize(
-    "settings", [[NONE, f"loading={PROGRAM}"], [NONE, "loading=[{to: block, steps: [0.5, 1]}]"]]
-)
+@pytest.mark.parametrize("settings", [[NONE, f"loading={PROGRAM}"], [NONE, "loading=[{to: block, steps: [0.5, 1]}]"]])
 def test_all_phases_give_their_steps(example, settings):
     case = read_case(example, settings)
     assert case.accuracy == "none"

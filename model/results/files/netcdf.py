@@ -4,14 +4,11 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from coilset.model.results.files.folder import whole
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 HEADER = 1 << 20  # maximum number of bytes of a file besides its numbers
 
@@ -44,15 +41,6 @@ class LabelledData:
         return replace(
             self, variables={**self.variables, **other.variables}, coordinates={**self.coordinates, **other.coordinates}
         )
-
-    def to_xarray(self) -> "xr.Dataset":
-        """The same as an `xarray.Dataset`, which is also what `xarray.open_dataset` gives of the file."""
-        import xarray as xr
-
-        def parts(variables: Mapping[str, Variable]) -> dict[str, tuple]:
-            return {name: (one.dims, one.values, dict(one.attrs)) for name, one in variables.items()}
-
-        return xr.Dataset(parts(self.variables), parts(self.coordinates), dict(self.attrs))
 
     def all(self) -> Iterator[tuple[str, Variable]]:
         """Names and variables, the coordinates last."""
