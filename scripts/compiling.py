@@ -23,7 +23,7 @@ STAGES = ("rod", "creep", "uniform", "point")  # see precompile.py; the first ru
 NOTICE = "coilset: compiling forms and kernels, once after an installation or a change; this takes a minute or two ..."
 NOTICE_OF_PART = "coilset: compiling what this command needs, once ..."
 COMPILE = [sys.executable, "-m", "coilset.scripts", "compile"]
-OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun tells a process that it is a rank, but for
+OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun marks a process as a rank, but for
 ALLOWED = "OMPI_ALLOW_"  # those without which it starts none as root
 
 
@@ -44,9 +44,9 @@ class Announcement(logging.Handler):
         if record.levelno > logging.INFO:
             self.say(record.getMessage())
         elif record.getMessage().startswith("Compiler stage"):
-            self.tell()
+            self.show()
 
-    def tell(self) -> None:
+    def show(self) -> None:
         """Once."""
         if not self.said:
             self.said = True
@@ -135,7 +135,7 @@ def announce_compiling(say: Callable[[str], None] = _to_stderr, notice: str = NO
         """Functions that numba loads from its cache cause no such event."""
 
         def on_start(self, event: object) -> None:
-            announcement.tell()
+            announcement.show()
 
         def on_end(self, event: object) -> None:
             pass

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TextIO
 
-if TYPE_CHECKING:  # the command asks for the numbers below before MPI is started
+if TYPE_CHECKING:  # the command needs the numbers below before MPI is started
     from mpi4py import MPI
 
 INTERRUPTED = 128 + signal.SIGINT  # exit code

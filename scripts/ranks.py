@@ -90,7 +90,7 @@ def _run(command: list[str], environment: dict[str, str], stopped: Path) -> int:
             print("coilset: interrupted", file=sys.stderr)
         code = INTERRUPTED
     elif code not in OWN:
-        messages.tell()
+        messages.show()
     if code == INTERRUPTED and OUTPUT_CLOSED in stops:
         return OUTPUT_CLOSED
     return code if code >= 0 else 128 - code  # ended by a signal
@@ -151,7 +151,7 @@ class MpirunMessages:
         """Flush the target."""
         self.target.flush()
 
-    def tell(self) -> None:
+    def show(self) -> None:
         """Write the lines that were held back."""
         self.target.write(self.kept + self.rest)
         self.flush()

@@ -13,7 +13,7 @@ def versions() -> str:
     import platform
 
     from coilset.model.base.content import (
-        described,  # here, as the metadata below: a command that only wants the version would wait for both
+        described,  # here, as the metadata below: `--version` alone would wait for both
     )
 
     found = [f"{name} {version}" for name, packages in LIBRARIES.items() if (version := _first(packages))]

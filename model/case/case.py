@@ -456,8 +456,8 @@ class Case(Strict):
 
     @property
     def clamps(self) -> HeadsSpec:
-        """How the heads of a clamped wire are held; hooks tilt at the point where they are pulled, unless `heads` says
-        otherwise."""
+        """How the heads of a clamped wire are held; hooks tilt at the point where they are pulled, unless set
+        in `heads`."""
         hooks = getattr(self.spring, "hooks", None)
         given = {end: getattr(self.heads, end) for end in ("bottom", "top")}
         for end, head in given.items():

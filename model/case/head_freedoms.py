@@ -19,7 +19,7 @@ CONJUGATE = {"side_force": "sideways", "tilt_moment": "tilt", "torque": "turn"}
 
 
 class HeadSpec(Strict):
-    """How a head is held; along the spring's axis it moves as the load program says."""
+    """How a head is held; along the spring's axis it moves by the load program."""
 
     sideways: Annotated[
         Freedom, Unit("N/mm"), Field(description="sideways motion: held, free, or a stiffness in N/mm")

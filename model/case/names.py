@@ -46,7 +46,7 @@ def _words(first: str, rest: list[str], case: Mapping[str, Any]) -> str:
             return f"{', '.join(quantity)}, number {number + 1}"
         turn = _turn(case, [first, *quantity[:-1]], number)
         return f"{', '.join(quantity[:-1])} " + (f"at turn {turn:g}" if turn is not None else f"at point {number + 1}")
-    if first == "spring" and len(rest) > 1:  # of a shape or an end, whose last name alone says little
+    if first == "spring" and len(rest) > 1:  # of a shape or an end, whose last name alone is not enough
         return ", ".join(rest)
     if rest and rest[-1].isdigit():
         return f"{first}, number {int(rest[-1]) + 1}"

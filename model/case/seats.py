@@ -13,7 +13,7 @@ GROOVE = 0.75  # turns of the groove that are usual: what grinding makes flat
 
 
 class SeatSpec(HeadSpec):
-    """One seat, and how it is held; along the spring's axis it moves as the load program says."""
+    """One seat, and how it is held; along the spring's axis it moves by the load program."""
 
     shape: Annotated[Literal["flat", "conical", "stepped"], Field(description="shape of its surface")] = "flat"
     angle: Annotated[

@@ -1,4 +1,4 @@
-"""The `sheet` section of a case: what the head of the spring's data sheet says."""
+"""The `sheet` section of a case: entries for the head of the spring's data sheet."""
 
 from datetime import date
 from typing import Annotated, Any

@@ -36,7 +36,7 @@ class Memory:
     It writes the trial arrays and also reads those of the last equilibrium.
 
     Args:
-        stations: name → station of each row of that array. The rank of the station knows the row after an evaluation;
+        stations: name → station of each row of that array. The rank of the station has the row after an evaluation;
             the others may not. Arrays that are not named are known to every rank.
         arrays: name → values at the start, the same on every rank.
 
@@ -241,4 +241,4 @@ class Contact(ABC):
         """Note that a correction starts from the state of the last evaluation, with its stiffness."""
 
     def forget_iterate(self) -> None:
-        """Forget what the last correction foresees; the next state is another one."""
+        """Discard the predictions of the last correction; the next state is another one."""

@@ -23,7 +23,7 @@ FILE = "sweep.nc"
 SHOWN = ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_inside_MPa", "status", "warnings")  # at first
 ANSWERS = SHOWN[:4]
 CURVES = 4_000_000  # numbers of all characteristics together, at most; beyond, a page shows none
-ENOUGH = 8  # cases with which a rank correlation says something
+ENOUGH = 8  # cases from which a rank correlation has a meaning
 DIGITS = 6  # of a number in the table
 
 

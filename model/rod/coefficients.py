@@ -6,7 +6,7 @@ from coilset.model.rod.elements import Element
 
 
 class Coefficients:
-    """Arrays by the names in coilset.model.rod.forms.FIELDS, where RodForms says what they are.
+    """Arrays by the names in coilset.model.rod.forms.FIELDS, documented in RodForms.
 
     Args:
         element: Element.

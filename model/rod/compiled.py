@@ -109,7 +109,7 @@ def _write(compiled: tuple[Compiled, Compiled], element: Element) -> None:
 
 
 def _record(element: Element) -> Path:
-    """The file that says what the forms were compiled into; its name depends on all that this depends on."""
+    """The file that lists what the forms were compiled into; its name depends on all that this depends on."""
     versions = [module.__version__ for module in (ufl, basix, ffcx, dolfinx)]
     options = sorted((name, str(value)) for name, value in ffcx.get_options(_options()).items())
     content = repr([*(path.read_text(encoding="utf-8") for path in SOURCES), versions, options, PROCESSOR, element])

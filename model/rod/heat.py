@@ -113,7 +113,7 @@ class WireHeat:
         """Bring the sections' points to the temperatures after conduction.
 
         Args:
-            mean: of the sections, before; still, now: what the equation says before and after, K, shape (cells,
+            mean: of the sections, before; still, now: those of the equation before and after, K, shape (cells,
                 sections).
             seconds: in which differences fade that the equation does not see, in a section and within an element.
         """

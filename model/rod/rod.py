@@ -239,7 +239,7 @@ class Rod(Body):
         self._points.follow()
         if self._finer is not None:
             self._finer.catch_up()
-        if self.in_time is not None:  # in the next step no time passes, not even half way, unless `pass_time` says so
+        if self.in_time is not None:  # in the next step no time passes, not even half way, without `pass_time`
             clock, halfway = (self.state[name].trial for name in CLOCKS)
             halfway[:] = clock
 

@@ -60,7 +60,7 @@ def mpi_environment() -> dict[str, str]:
 
 @contextlib.contextmanager
 def folder_of_mpirun() -> Iterator[dict[str, str]]:
-    """A folder for an mpirun's own files, removed afterwards, as a variable that tells Open MPI of it.
+    """A folder for an mpirun's own files, removed afterwards, named in a variable of Open MPI.
 
     By itself it names that folder by its process number, and fails where a killed one has left a folder of that name.
     """

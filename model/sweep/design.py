@@ -61,7 +61,7 @@ def unit_cube(spec: SweepSpec) -> np.ndarray:
     For `sobol_indices` they are the blocks A, B, AB₁ … AB_d of Saltelli et al., Comput. Phys. Commun. 181 (2010) 259:
     ABᵢ is A with column i from B.
     """
-    assert spec.samples is not None  # SweepSpec asks for it with these designs
+    assert spec.samples is not None  # required by SweepSpec with these designs
     d, n = len(spec.vary), spec.samples
     rng = np.random.default_rng(spec.seed)
     if spec.design == "random":

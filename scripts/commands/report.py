@@ -44,7 +44,7 @@ def _solve_found(folder: Path) -> None:
         if design_page.found_run(folder, design) is not None:
             return
     Console().say(f"solving {folder / 'found.yaml'} for its characteristic")
-    with contextlib.suppress(SolveError):  # the page says so
+    with contextlib.suppress(SolveError):  # the page shows it
         solve(folder / "found.yaml", folder / design_page.FOUND, True, [], False, comm=MPI.COMM_SELF, voice="quiet")
 
 

@@ -109,7 +109,7 @@ class _Runs:
     number: int = 0
 
     def __call__(self, analysis: Analysis, finer: str = "") -> Analysis:
-        """Run one; `finer` says what is finer than before.
+        """Run one; `finer` names what is finer than before.
 
         Raises:
             SolveError, KeyboardInterrupt: as Analysis.run.

@@ -62,7 +62,7 @@ class Lines:
         self.say(f"{HEAD}{'points':>7}  contacts")  # a row fits in 80 columns
 
     def again(self, analysis: Analysis, finer: str) -> None:
-        """A finer run of the same case begins or continues; `finer` says what is finer."""
+        """A finer run of the same case begins or continues; `finer` names what is finer."""
         self.analysis, self._began, self._from = analysis, time.monotonic(), _done(analysis)
         self.say(f"the estimated error exceeds the accuracy: again with {finer}")
         self.say(f"{HEAD}{'points':>7}  contacts")
@@ -123,9 +123,9 @@ class Quiet(Lines):
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """The warnings that were not printed at the beginning."""
-        told = {warning.message for warning in self.analysis.setup.warnings}
+        printed = {warning.message for warning in self.analysis.setup.warnings}
         for warning in summary["warnings"]:
-            if warning["message"] not in told:
+            if warning["message"] not in printed:
                 self.warn(warning["message"])
 
 

@@ -69,14 +69,14 @@ def problem(data):
         ({"colour": "red"}, "colour: unknown entry; the entries here are spring, material, "),
     ],
 )
-def test_wrong_entries_are_told_in_words(entries, message):
+def test_wrong_entries_are_described_in_words(entries, message):
     found = problem(raw(**entries))
     assert f"{found}$".startswith(message)
     assert "constrained" not in found
     assert "instance" not in found
 
 
-def test_a_required_entry_says_what_it_is():
+def test_a_required_entry_is_described():
     words = "loading: this entry is required; give the load program: targets and waiting times, in order"
     assert problem({"spring": SPRING}) == words
 

@@ -60,7 +60,7 @@ def undisturbed(example):
     return analysis
 
 
-def test_enter_goes_on_and_asks_again(typed, undisturbed):
+def test_enter_goes_on_and_prompts_again(typed, undisturbed):
     analysis, said, read = typed("", "", "  ", "", "", "", "this is never asked for")
     assert read == 6  # once after each step
     assert said == []

@@ -67,7 +67,7 @@ def test_json_has_the_rows_of_the_history_and_the_summary(said):
     assert [step["touching"] for step in steps] == [*SEATS * 2, "both seats, coils", *SEATS, "no contact"]
 
 
-def test_quiet_says_warnings_alone(said):
+def test_quiet_prints_warnings_alone(said):
     lines, folder = said(voice="quiet")
     warnings = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["warnings"]
     assert len(lines) >= len(warnings) > 0
@@ -75,7 +75,7 @@ def test_quiet_says_warnings_alone(said):
     assert not any(re.match(r" +(\d+|set) +\d", line) for line in lines)  # no row of the steps or the results
 
 
-def test_verbose_tells_each_iteration(said):
+def test_verbose_prints_each_iteration(said):
     """As many as the step took and the state it began with, the last one in equilibrium; no colours in a file."""
     lines, _ = said(verbose=True)
     assert not any("\x1b" in line for line in lines)
@@ -106,5 +106,5 @@ def test_names_are_printed_as_they_are(said, capsys):
 
 
 @pytest.mark.parametrize(("seconds", "words"), [(40.4, "40 s"), (99.6, "100 s"), (150.0, "2 min"), (9000.0, "2.5 h")])
-def test_times_are_told_in_few_digits(seconds, words):
+def test_times_are_printed_in_few_digits(seconds, words):
     assert duration(seconds) == words

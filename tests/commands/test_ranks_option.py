@@ -40,7 +40,7 @@ def test_mpirun_s_own_words_are_kept_apart():
     for piece in (own[:9], own[9:] + theirs[:100], theirs[100:], b"[vm:1] PMIX ERROR: lost\n", own):
         messages.write(piece)
     assert target.getvalue() == 2 * own
-    messages.tell()
+    messages.show()
     assert target.getvalue() == 2 * own + theirs + b"[vm:1] PMIX ERROR: lost\n"
 
 

@@ -34,7 +34,7 @@ def test_commands_follow_each_other():
         build_input(read_case(case, settings))
 
 
-def test_readme_tells_the_time_that_the_tests_tell(monkeypatch, capsys):
+def test_readme_states_the_time_of_the_tests(monkeypatch, capsys):
     monkeypatch.setattr(suite, "usable_cores", lambda: 1)
     monkeypatch.setattr(suite, "run", lambda *_: 0)
     assert suite.test([]) == 0

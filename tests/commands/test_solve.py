@@ -75,7 +75,7 @@ def test_letters_that_the_output_lacks_are_replaced(example, tmp_path):
     assert "? D n_t" in done.stdout  # for π
 
 
-def test_solve_writes_what_the_readme_says(example, tmp_path):
+def test_solve_writes_what_the_readme_lists(example, tmp_path):
     done = coilset("solve", example, "--out", "here", *SHORT, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     summary = json.loads((tmp_path / "here" / "summary.json").read_text())

@@ -109,7 +109,7 @@ def test_what_is_not_sought_does_not_touch(make_coils, helix, monkeypatch):
     assert sum(sought) < 25
 
 
-def test_no_point_moves_farther_than_the_amplification_says(points):
+def test_no_point_moves_farther_than_by_the_amplification(points):
     """The bound is met by the worst of all motions of the stations, each by 1 mm to and fro."""
     line = points(thin=2.2).line
     xi = np.linspace(0.0, 1.0, 201)

@@ -19,7 +19,7 @@ def test_cone_reaches_block_and_comes_back_without_a_failed_solve():
     assert by_hand.block_travel() - summary["set_mm"] == pytest.approx(by_hand.spring_back(), rel=0.1)
 
 
-def test_failed_solves_are_told_by_the_words_of_the_log():
+def test_failed_solves_are_found_by_the_words_of_the_log():
     """Or none would ever be counted."""
     sources = "".join(path.read_text() for path in Path(equilibrium.__path__[0]).rglob("*.py"))
     assert [words for words in (*FAILED, *SOLVED, *IN_PARTS) if words not in sources] == []

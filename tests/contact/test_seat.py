@@ -46,7 +46,7 @@ def test_stiffness_is_the_derivative_of_the_forces(make_seat, helix, dense, end,
     np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-12 * np.abs(K).max())
 
 
-def test_a_flat_seat_bears_each_point_by_its_length_and_penetration(make_seat, helix):
+def test_a_flat_seat_supports_each_point_by_its_length_and_penetration(make_seat, helix):
     """Beyond the onset w the pressure is bedding · length · (penetration − w)."""
     seat = make_seat("bottom")
     x = helix(0.0, lift=2.48)
@@ -67,7 +67,7 @@ def test_a_stepped_seat_touches_the_unloaded_wire_over_its_turns(make_seat, heli
     assert np.all(gap[23:] > 0.1)
 
 
-def test_a_conical_seat_bears_across_its_surface(make_seat, helix, dense):
+def test_a_conical_seat_acts_across_its_surface(make_seat, helix, dense):
     """A cone with tan β = 0.5: the force on the wire has a radial share tan β of its axial one, inwards; points between
     the stations, 6e-4 of the radius off the circle, share theirs out over neighbours that point elsewhere."""
     seat = make_seat("bottom", slope=0.5)

@@ -99,7 +99,7 @@ def test_a_stiff_tilt_is_a_guided_seat_and_a_soft_one_a_ball_joint(guided):
     assert found[2] == pytest.approx(guided[1].seats[-1].top.eccentricity_mm, rel=1e-4)
 
 
-def test_a_seat_that_is_free_sideways_bears_no_lateral_force(guided):
+def test_a_seat_that_is_free_sideways_has_no_lateral_force(guided):
     """And one on springs bears what these hold: k times the way."""
     assert np.hypot(guided[1].seats[-1].top.lateral_x_N, guided[1].seats[-1].top.lateral_y_N) > 1.0
     _, free = run({"hold": "groove", "top": {"sideways": "free"}})

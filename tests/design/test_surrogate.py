@@ -35,7 +35,7 @@ def test_closed_ends_are_not_active():
     assert coil(case(closed).spring.build())[3] == pytest.approx(4.0)
 
 
-def test_a_fully_plastic_wire_bears_four_thirds_of_its_yield_torque():
+def test_a_fully_plastic_wire_carries_four_thirds_of_its_yield_torque():
     """Without hardening: ∫ τ r dA of the full section over that at first yield; bending and curvature add 2 %."""
     loading = [{"to": "block"}, {"to": {"force": 0}}]
     spring = {**SPRING, "pitch": 40.0}

@@ -92,7 +92,7 @@ def test_links_lead_to_tables(tmp_path):
         assert all(f"({target})=" in text for target in targets)
 
 
-def test_a_row_says_what_the_entry_takes():
+def test_a_row_lists_what_the_entry_takes():
     """Against the entries as their file declares them, one of each kind."""
     rows = {(group.model.__name__, row.name): row for group in reference.groups(MODELS["case"]) for row in group.rows}
     wire = rows["SpringSpec", "wire_diameter"]

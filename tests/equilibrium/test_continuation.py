@@ -243,7 +243,7 @@ def test_a_stagnated_solve_is_not_repeated_from_elsewhere(make, stagnated, solve
     assert (outcome.failed_solves, outcome.evaluations) == (solves - 1, 7 * solves)
 
 
-def test_a_solve_that_stagnates_says_so(make):
+def test_a_solve_that_stagnates_is_reported(make):
     """Given no patience at all, Newton stops where the norm first grows, as it does where coils close.
 
     Corrections may press the coils into each other here.

@@ -34,7 +34,7 @@ def shares_of(analysis, monkeypatch, factor=1.0):
 
 @pytest.mark.parametrize(("value", "predicts"), [("null", True), ("true", True), ("false", False)])
 @pytest.mark.parametrize("entry", ["predicted_forces", "foreseen_forces"])
-def test_forces_are_predicted_unless_the_case_says_no(make, monkeypatch, entry, value, predicts):
+def test_forces_are_predicted_unless_switched_off(make, monkeypatch, entry, value, predicts):
     """By the entry's earlier name as well, with a notice."""
     analysis = make(f"solver.control.newton.{entry}={value}")
     shares = shares_of(analysis, monkeypatch)

@@ -90,7 +90,7 @@ LINEAR = {"strain: 2.0e-4": "strain: 2.0e-6", "exponent: 6": "exponent: 4", "tim
 
 
 @pytest.mark.parametrize(("changes", "unknown", "known"), [({}, [1], 3), (LINEAR, [1, 3], 4)])
-def test_a_hold_in_coarse_steps_tells_its_error_or_that_it_is_not_known(tmp_path, example, changes, unknown, known):
+def test_a_hold_in_coarse_steps_has_an_error_or_an_unknown_one(tmp_path, example, changes, unknown, known):
     """In one step the difference of its halves has the other sign; told over true in `known` steps: 0.6 to 0.7."""
     material = (Path(library.__file__).parent / "creeping.yaml").read_text()
     for old, new in changes.items():

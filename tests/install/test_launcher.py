@@ -67,7 +67,7 @@ def test_without_an_environment_help_names_the_ways_and_makes_none(tmp_path, arg
     assert not list(tmp_path.glob("debian*"))
 
 
-def test_without_root_nothing_is_made_and_the_ways_are_told(tmp_path):
+def test_without_root_nothing_is_made_and_the_ways_are_listed(tmp_path):
     """As a user who is not root, which `id` tells the launcher."""
     (tmp_path / "id").write_text("#!/bin/sh\necho 1000\n")
     (tmp_path / "id").chmod(0o755)
@@ -110,7 +110,7 @@ def test_version_names_what_the_numbers_rest_on():
     assert all(f"{name} " in words for name in ("coilset", "DOLFINx", "petsc4py", "numba", "Python"))
 
 
-def test_a_package_without_metadata_tells_its_version_itself():
+def test_a_package_without_metadata_has_its_version_in_code():
     assert _first(("coilset.model.base.version",)) == __version__
     assert _first(("no-package", "of-this-name")) == ""
 

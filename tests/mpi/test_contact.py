@@ -77,7 +77,7 @@ def test_each_rank_finds_what_acts_on_its_unknowns(pressed):
 
 
 @pytest.mark.skipif(COMM.size == 1, reason="one rank knows all")
-def test_a_rank_knows_only_what_is_near(pressed):
+def test_a_rank_holds_only_what_is_near(pressed):
     """Beside its own coils some of the next parts; the last rank also the end coil on the other seat."""
     analysis, x, *_ = pressed
     if analysis.case.seats.top.moves:

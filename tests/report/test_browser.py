@@ -188,7 +188,7 @@ def test_limits_have_their_table_and_histogram(browser, sweep_page):
     assert browser.run(f"return {figure}.querySelector('.scatterlayer path.js-line').getBBox().height") > 100
 
 
-def test_a_failed_case_says_why(browser, sweep_page):
+def test_a_failed_case_shows_the_reason(browser, sweep_page):
     browser.look(390)
     browser.open(sweep_page)
     browser.run(

@@ -215,7 +215,7 @@ def test_each_step_can_be_slid_to(folder, page):
     ]
 
 
-def test_first_and_second_loading_are_told_apart(folder):
+def test_first_and_second_loading_are_distinguished(folder):
     """Phases of one name are numbered; where there is no second loading, the page says how to get it."""
     run = open_run(folder)
     assert [phase.label for phase in phases(run, NAMED)] == ["to block", "to force 0 N"]

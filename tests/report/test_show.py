@@ -54,7 +54,7 @@ def test_the_file_of_all_times_holds_the_same(run):
         (("summary.json", "inner/points.nc", "outer/points.nc"), "there is no points.nc; is {}/inner meant?"),
     ],
 )
-def test_a_folder_without_a_run_is_told(tmp_path, there, said):
+def test_a_folder_without_a_run_is_reported(tmp_path, there, said):
     """Such as that of a slice, or of a nest, which has a run in each of two folders."""
     for name in there:
         (tmp_path / name).parent.mkdir(exist_ok=True)

@@ -147,7 +147,7 @@ def test_limits_have_their_table_and_histogram(tmp_path):
     assert 'id="table"' in page  # saves the cases
 
 
-def test_a_sample_says_of_how_many_cases_it_is(plan, folder, tmp_path):
+def test_a_sample_states_the_number_of_all_cases(plan, folder, tmp_path):
     dataset.write(tmp_path / "sweep.nc", dataset.collect(plan, folder, most=2))
     page = write_sweep_report(tmp_path).read_text(encoding="utf-8")
     assert "A sample of 2 of the 6 cases, evenly spread over the plan" in page

@@ -47,6 +47,6 @@ def test_points_hold_the_same(folder):
     assert np.datetime64(made_with["date"].removesuffix("+00:00")) > np.datetime64("2020-01-01")
 
 
-def test_the_file_of_a_measured_spring_is_told_by_its_content(example):
+def test_the_file_of_a_measured_spring_is_identified_by_its_content(example):
     made_with = origin(read_case(example.parent / "springs" / "measured.yaml"))
     assert set(made_with["contents"]) == {"material", "spring.file"}

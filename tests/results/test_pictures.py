@@ -265,7 +265,7 @@ def test_all_figures_share_one_look():
         ({"set_mm": None, "load_loss_percent": 17.05}, "the spring loses 17.05 % of its load"),
     ],
 )
-def test_a_characteristic_says_what_becomes_of_the_spring(analysis, summary, said):
+def test_a_characteristic_names_what_becomes_of_the_spring(analysis, summary, said):
     run = opened(analysis)
     assert said in characteristic(replace(run, summary=run.summary | summary)).title
 

@@ -38,7 +38,7 @@ def names(warnings):
     return [warning.name for warning in warnings]
 
 
-def test_a_seat_that_lifts_off_is_told(lifted):
+def test_a_seat_that_lifts_off_is_reported(lifted):
     (warning,) = (one for one in run_warnings(lifted.setup, lifted.result) if one.name not in ("contact mesh", "error"))
     steps = lifted.result.steps
     assert warning.name == "lift-off"
@@ -50,7 +50,7 @@ def test_a_seat_that_lifts_off_is_told(lifted):
     assert warning.value == steps[-1].lift_off_mm
 
 
-def test_a_seat_that_is_left_bears_nothing(lifted):
+def test_a_seat_that_is_left_carries_nothing(lifted):
     """The springs at the tips pull by some tenths of a newton; no seat does."""
     steps, seats = lifted.result.steps, lifted.result.seats
     assert lifted.control.force < -0.1
@@ -172,7 +172,7 @@ def test_a_negative_set_after_compression_is_named(lifted):
     assert longer(1.01 * limit, setup=replace(setup, coiling_diameter=30.0)) == []
 
 
-def test_a_force_on_a_wall_is_told(lifted):
+def test_a_force_on_a_wall_is_reported(lifted):
     """From 100 N at 10 mm to 120 N at 10.1 mm: 200 N/mm are 16.8 % of it for 1 % of the travel, 400 N/mm 29 %."""
     first = Step(1, 0, 0.9, 25.0, 10.0, 100.0, 3, 4, 0, 0, 2, 0.0)
     for force, phase, progress, found in (
@@ -204,7 +204,7 @@ def test_the_steps_error_is_held_against_the_accuracy_asked_for():
 
 
 @pytest.mark.parametrize(("error", "found"), [(1e-4, []), (1e-3, ["step error"])])
-def test_an_error_of_the_set_that_nobody_measures_is_not_told(example, error, found):
+def test_an_error_of_the_set_that_nobody_measures_is_not_reported(example, error, found):
     """Of an elastic spring of 35 mm that has set by a thousandth of a millimetre in rounding."""
     settings = [*COARSE, "material=elastic", "loading=[{to: {travel: 6}, steps: 2}, {to: {force: 0}, steps: 1}]"]
     analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
@@ -215,7 +215,7 @@ def test_an_error_of_the_set_that_nobody_measures_is_not_told(example, error, fo
     assert [name for name in names(run_warnings(analysis.setup, set_so)) if name != "error"] == found
 
 
-def test_an_error_that_is_not_known_at_the_greatest_force_is_told(lifted):
+def test_an_error_that_is_not_known_at_the_greatest_force_is_reported(lifted):
     """Where accuracy is asked for, and the spring bears something; elsewhere than at its greatest no error is held."""
     setup, result = lifted.setup, lifted.result
     top = max(range(8), key=lambda number: result.steps[number].force_N)

@@ -73,7 +73,7 @@ def test_another_target_takes_time_too(warming):
     assert analysis.case.loading[0].to.travel == 45.0
 
 
-def test_expansion_of_a_free_wire_bears_no_stress(warming, tmp_path):
+def test_expansion_of_a_free_wire_causes_no_stress(warming, tmp_path):
     """Heated evenly by 100 K and grown by α ΔT in all directions a spring has no stress; held, its wire has E α ΔT."""
     data = yaml.safe_load(Path(warming).read_text(encoding="utf-8"))
     for at in data["temperatures"]:

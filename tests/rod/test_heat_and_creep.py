@@ -85,7 +85,7 @@ def test_an_oven_with_strong_convection_heats_as_a_given_temperature(files):
 
 
 @pytest.mark.parametrize("kind", ["plane", "curved"])
-def test_a_section_that_grows_evenly_bears_no_stress(files, kind):
+def test_a_section_that_grows_evenly_has_no_stress(files, kind):
     """Heated, and its axis as much longer, without a turn: a curved wire's fibres have no stress; held, E α ΔT/g."""
     law = library.load(files["elastic creeps"])
     place = straight(1)._replace(curvature=np.full((1, 2), 0.05))

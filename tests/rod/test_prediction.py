@@ -84,7 +84,7 @@ def test_a_rod_recalls_the_end_of_its_last_step_without_evaluating_the_law(make_
     assert np.abs(rod.coefficients.D[..., 3, 3] / there[1][..., 3, 3]).max() > 1.5
 
 
-def test_a_long_rod_asks_the_law_instead(example, monkeypatch):
+def test_a_long_rod_uses_the_law_instead(example, monkeypatch):
     """It keeps no tangents of its last equilibrium: another one for each start of a step, and the same forces."""
     settings = [
         "ends=clamped",

@@ -34,7 +34,7 @@ def test_moments_are_exact_up_to_the_rules_degree(rule, degree):
             assert rule.weights @ (y**a * z**b) == pytest.approx(moment(a, b), abs=1e-14), (a, b)
 
 
-def test_abramowitz9_is_exact_for_the_second_moment_as_the_thesis_says():
+def test_abramowitz9_is_exact_for_the_second_moment_as_in_the_thesis():
     """I = πR⁴/4 (5.2.43): the mean of y² is R²/4."""
     rule = abramowitz9()
     assert len(rule) == 9

@@ -44,7 +44,7 @@ def test_peak_lies_between_the_points():
 
 
 @pytest.mark.parametrize("rounding", [-1e-12, 0.0, 1e-12])
-def test_of_two_peaks_that_differ_by_rounding_the_first_is_told(rounding):
+def test_of_two_peaks_that_differ_by_rounding_the_first_is_returned(rounding):
     values = np.zeros((2, 2, 24))
     values[1, 0] = np.arange(24.0)
     values[0, 1] = values[1, 0] * (1.0 + rounding)

@@ -84,7 +84,7 @@ def test_curved_axis_meets_castigliano_at_16_elements_a_turn(ck15):
         assert rate == pytest.approx(exact, rel=1e-4), per_turn
 
 
-def test_a_section_that_knows_the_curvature_meets_castigliano_with_its_stiffnesses(ck15):
+def test_a_section_with_the_curvature_meets_castigliano_with_its_stiffnesses(ck15):
     """1.1 % stiffer than without, by the closed integrals of 1/g over the disk; 3e-5 is measured."""
     spring = SpringSpec(wire_diameter=WIRE, mean_diameter=MEAN, turns=TURNS, pitch=PITCH).build()
     exact = clamped_rate(spring, ck15.E, ck15.G, curved=True)

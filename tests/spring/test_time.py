@@ -121,7 +121,7 @@ def viscous(tmp_path):
     return str(path)
 
 
-def test_a_fast_press_bears_more_and_then_relaxes(viscous):
+def test_a_fast_press_carries_more_and_then_relaxes(viscous):
     """Infinitely slow without seconds, as without the entry; fast, the force is higher, and falls to it in a hold.
 
     To 0.6 % above in six steps. At 20 mm the spring is solid, and its force, a hundred times as large, says little.

@@ -207,7 +207,7 @@ def test_a_set_is_held_against_presetting_where_the_run_was_at_block(case, tmp_p
         ({"turns": 9.0, "hand": "left"}, "spring.turns, spring.hand"),
     ],
 )
-def test_results_of_another_spring_are_told(case, tmp_path, capsys, changes, said):
+def test_results_of_another_spring_are_reported(case, tmp_path, capsys, changes, said):
     folder = run_folder(tmp_path / "run")
     entries = read_case(case).spring.model_dump(mode="json")
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))

@@ -45,7 +45,7 @@ def test_validity_ends_with_the_uniform_strain():
     assert law.validity.plastic_work == pytest.approx(np.trapezoid(true, plastic[:peak]), rel=2e-2)
 
 
-def test_law_says_that_it_is_an_estimate():
+def test_law_is_marked_as_an_estimate():
     law = wire_law("EN 10270-1 SH", 3.0)
     assert law.validity.remark.startswith("estimate")
     assert (law.G, round(law.E)) == (81500.0, 206000)
@@ -56,7 +56,7 @@ def test_stronger_wire_yields_later():
     assert wire_law("EN 10270-1 SH", 1.0).yield_stress > wire_law("EN 10270-1 SH", 5.0).yield_stress
 
 
-def test_curve_wants_ascending_numbers():
+def test_curve_needs_ascending_numbers():
     with pytest.raises(ValueError, match="must ascend"):
         curve(900.0, 800.0, 1000.0, 206e3, 0.3)
 
@@ -78,7 +78,7 @@ def test_wire_of_a_case_takes_its_diameter_from_the_spring():
     assert case_law(named, named.spring.build()).name == "ck15"
 
 
-def test_cases_of_a_sweep_are_told_apart_by_their_wires():
+def test_cases_of_a_sweep_are_distinguished_by_their_wires():
     keys = [Keys()(case(material)) for material in ({"wire": "EN 10270-1 SH"}, {"wire": "EN 10270-1 SM"}, "ck15")]
     assert len(set(keys)) == 3
     assert Keys()(case({"wire": "EN 10270-1 SH"})) == keys[0]

@@ -147,7 +147,7 @@ def test_no_number_stands_alone_and_estimates_say_how_they_were_made(path):
         assert {entry.elastic_limit.sure, entry.proof_stress.sure} == {"estimate"}
 
 
-def test_each_number_says_how_sure_it_is():
+def test_each_number_has_its_certainty():
     for name in names():
         found = wire(name)
         for _, entry in found.entry.sourced():

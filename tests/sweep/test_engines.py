@@ -153,7 +153,7 @@ def test_a_scheduler_that_does_not_answer_is_named(monkeypatch):
         pass
 
 
-def test_a_study_asks_and_tells_and_goes_on_where_it_was(plan, tmp_path):
+def test_a_study_goes_on_where_it_was(plan, tmp_path):
     study = Study(plan.path, tmp_path / "study")
     trials = study.ask(3)
     assert [trial.inputs["spring.pitch"] for trial in trials] == [row[1] for row in plan.rows[:3]]

@@ -390,7 +390,7 @@ def test_inputs_have_the_units_of_their_entries(write_sweep, tmp_path):
     assert dataset.quantity("plastic_work_max_N_per_mm2") == ("maximum plastic work", "N/mm²")
 
 
-def test_a_sweep_with_failed_cases_says_so_and_ends_with_3(write_sweep, tmp_path):
+def test_a_sweep_with_failed_cases_warns_and_ends_with_3(write_sweep, tmp_path):
     three = command(write_sweep(THREE), tmp_path / "out", "--jobs", "1")
     done = subprocess.run(three, capture_output=True, text=True, check=False)
     assert done.returncode == 3

@@ -83,7 +83,7 @@ def test_the_legend_of_the_force_centre_is_clear_of_the_ring(tmp_path, monkeypat
     assert not any(legend.overlaps(axes.title.get_window_extent(canvas.get_renderer())) for axes in maps)
 
 
-def test_the_title_of_a_figure_says_what_was_found(tmp_path):
+def test_a_figure_is_titled_with_its_result(tmp_path):
     study = Study(tmp_path)
     study.check("close", 1.001, 1.0, "closed form", 0.1)
     study.check("force, N", 1.05, 1.0, "closed form", 0.1)
@@ -100,7 +100,7 @@ def test_the_title_of_a_figure_says_what_was_found(tmp_path):
     assert study.finding == "1 of 3 numbers are beyond their tolerance"
 
 
-def test_the_page_tells_what_uses_most_of_its_tolerance(tmp_path):
+def test_the_page_names_what_uses_most_of_its_tolerance(tmp_path):
     study = Study(tmp_path / "two-circles")
     study.check("close", 1.001, 1.0, "closed", 0.1)
     study.check("closer to its limit", 1.05, 1.0, "closed", 0.1)
@@ -131,7 +131,7 @@ def test_the_page_shows_a_number_that_is_not_met(tmp_path):
     assert row.endswith("| 2 of 3 not met |")
 
 
-def test_a_case_that_stops_has_not_passed_and_the_page_says_so(tmp_path, monkeypatch, capsys):
+def test_a_case_that_stops_is_failed_on_the_page(tmp_path, monkeypatch, capsys):
     def stops(study):
         study.check("first", 1.0, 1.0, "closed", 0.1)
         raise SolveError("no equilibrium at step 3")

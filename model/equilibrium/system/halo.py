@@ -1,6 +1,6 @@
 """Halo of a rank: the stations of other ranks on which the contacts that act on its own unknowns depend.
 
-Each rank tells the box around its stations to all others, and sends each the stations of its own that lie within the
+Each rank sends the box around its stations to all others, and each the stations of its own that lie within the
 contacts' reach of that one's box; to the last rank, which owns the seats' unknowns, also those that may act on a seat.
 Every contact that joins two parts is then evaluated on both ranks, from the same numbers in the same order, so that
 forces and stiffness need not be exchanged.

@@ -1,4 +1,4 @@
-"""What the data sheet of a spring says: its head, drawing, tables, diagrams and remarks."""
+"""Content of the data sheet of a spring: its head, drawing, tables, diagrams and remarks."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Writes the data sheet as a page, a PDF, a table, a drawing or a solid body, whichever the name of the file says."""
+"""Writes the data sheet as a page, a PDF, a table, a drawing or a solid body, by the suffix of the file's name."""
 
 import csv
 import io
@@ -17,7 +17,7 @@ from coilset.model.results.files.folder import make, whole
 
 
 def write(made: Document, path: str | Path) -> None:
-    """Write a sheet; the suffix, one of WRITERS, says as what.
+    """Write a sheet; the suffix, one of WRITERS, selects the kind.
 
     Raises:
         CoilsetError: if the file cannot be written.

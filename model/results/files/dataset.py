@@ -168,8 +168,8 @@ def with_origin(data: LabelledData, setup: Setup, result: Result, origin: Mappin
     warnings = [asdict(warning) for warning in run_warnings(setup, result)]
     texts = {name: value if isinstance(value, str) else json.dumps(value) for name, value in origin.items()}
     renamed = {"material_file" if name == "material" else name: text for name, text in texts.items()}
-    told = {"warnings": json.dumps(warnings), "complete": str(result.complete).lower()}
-    return replace(data, attrs={**data.attrs, **renamed, **told})
+    notes = {"warnings": json.dumps(warnings), "complete": str(result.complete).lower()}
+    return replace(data, attrs={**data.attrs, **renamed, **notes})
 
 
 def write_points(folder: str | Path, data: LabelledData) -> None:
