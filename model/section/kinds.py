@@ -5,13 +5,9 @@
 - warping: it warps freely with the curved and twisted wire, and has all six stresses.
 """
 
-from collections.abc import Callable
-from typing import Any, Protocol, Self
-
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.fibres import FibreSections
@@ -21,46 +17,7 @@ from coilset.model.section.warping import WarpingSections
 KINDS = ("plane", "curved", "warping")
 
 
-class Sections(Protocol):
-    """Interface of sections for the rod; `FibreSections` documents the methods.
-
-    Attributes:
-        radius, placement: of the cells.
-        law_over_time: the law of their points.
-        passing: arrays of the trial state in which `update` may write one element after the other in the same place,
-            of which each thread has one.
-        threads: Threads that advance them.
-    """
-
-    radius: np.ndarray
-    placement: Placement
-    law_over_time: LawOverTime
-    passing: tuple[str, ...]
-    threads: Threads
-
-    @property
-    def components(self) -> tuple[str, ...]:
-        """Names of the columns of a point's state."""
-        ...
-
-    def part(self, cells: slice) -> Self:
-        """The sections of some of the cells."""
-        ...
-
-    @property
-    def initial_state(self) -> Callable[[], dict[str, np.ndarray]]:
-        """The arrays of unstressed sections."""
-        ...
-
-    @property
-    def update(self) -> Callable[..., Any]:
-        """Advance all sections to the end of an increment."""
-        ...
-
-    @property
-    def update_surface(self) -> Callable[..., None]:
-        """Advance the points on the surface to the end of an increment."""
-        ...
+Sections = FibreSections | WarpingSections
 
 
 def make_sections(
