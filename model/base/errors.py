@@ -32,18 +32,14 @@ class InputError(CoilsetError):
         super().__init__(printable(text))
 
 
-def unreadable(file: object, error: Exception) -> InputError:
-    """The error for a file that cannot be read, with the first line of the reason."""
-    return InputError(f"is not readable: {str(error).partition(chr(10))[0] or type(error).__name__}", "", file)
-
-
 @contextlib.contextmanager
 def reading(file: object) -> Iterator[None]:
-    """Context in which whatever a reader of a file raises becomes the error for a file that cannot be read."""
+    """Context in which whatever a reader of a file raises becomes the error for it, with the reason's first line."""
     try:
         yield
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise unreadable(file, error) from None
+        reason = str(error).partition("\n")[0] or type(error).__name__
+        raise InputError(f"is not readable: {reason}", "", file) from None
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coilset.model.base.columns import read_columns
-from coilset.model.base.errors import InputError
+from coilset.model.base.errors import InputError, reading
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -94,12 +94,8 @@ def read(folder: str | Path) -> Found:
     folder = Path(folder)
     if not (folder / "summary.json").is_file():
         raise InputError("holds no results of a run: there is no summary.json", "", folder)
-    try:
+    with reading(folder / "summary.json"):
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(
-            f"cannot be read ({getattr(error, 'strerror', None) or error})", "", folder / "summary.json"
-        ) from None
     history = read_columns(folder / "history.csv")
     try:
         before = summary["free_length_before_mm"]

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from coilset.model.base.columns import number, read_columns
-from coilset.model.base.errors import InputError, unreadable
+from coilset.model.base.errors import InputError, reading
 from coilset.model.results.records.units import unit_of
 
 
@@ -62,17 +62,13 @@ def open_run(folder: str | Path) -> Run:
             within = min(folder.glob("*/points.nc"), default=None)  # of a nest's springs, or of runs in one folder
             hint = f"; is {within.parent} meant?" if within else ""
             raise InputError(f"holds no results of a run: there is no {name}{hint}", "", folder)
-    path = folder / "summary.json"
-    try:
-        summary = json.loads(path.read_text(encoding="utf-8"))
-        path = folder / "points.nc"
-        with xr.open_dataset(path, engine="h5netcdf") as file:
-            data = current_names(file.load())
-        for name in ("history", "seats"):
-            path = folder / f"{name}.csv"
-            data = data.merge(table(path), compat="override", join="outer")
-    except (OSError, ValueError, KeyError) as error:
-        raise unreadable(path, error) from None
+    with reading(folder / "summary.json"):
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    with reading(folder / "points.nc"), xr.open_dataset(folder / "points.nc", engine="h5netcdf") as file:
+        data = current_names(file.load())
+    for name in ("history", "seats"):
+        with reading(folder / f"{name}.csv"):
+            data = data.merge(table(folder / f"{name}.csv"), compat="override", join="outer")
     if "origin" not in summary:
         raise InputError("is of a version without the case in it; solve it again", "", folder / "summary.json")
     return Run(folder, summary, data)
