@@ -78,26 +78,20 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, inside:
         )
     if degree not in (2, 3):
         raise InputError(f"{degree} is not possible; give 2 or 3", "section.degree")
-    gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
-    try:
-        with _fillable():
-            gmsh.model.add("section")
-            curves = outline.draw()
-            face = gmsh.model.occ.addPlaneSurface([gmsh.model.occ.addCurveLoop(curves)])
-            gmsh.model.occ.synchronize()
-            area, outer = gmsh.model.occ.getMass(2, face), gmsh.model.getBoundary([(2, face)], oriented=False)
-            if not area > 0.0:
-                raise InputError("the curve crosses itself between its points; give more of them", "section.points")
-            size = 2.0 * np.sqrt(area / np.pi) / across
-            along = [_samples(tag) for _, tag in outer]
-            extent = _extent(np.concatenate(along))
-            _sizes(size, inside, extent)
-            gmsh.model.addPhysicalGroup(2, [face], name="section")
-            gmsh.model.mesh.generate(2)
-            gmsh.model.mesh.setOrder(degree)
+    with _drawn(outline) as curves:
+        face = gmsh.model.occ.addPlaneSurface([gmsh.model.occ.addCurveLoop(curves)])
+        gmsh.model.occ.synchronize()
+        area, outer = gmsh.model.occ.getMass(2, face), gmsh.model.getBoundary([(2, face)], oriented=False)
+        if not area > 0.0:
+            raise InputError("the curve crosses itself between its points; give more of them", "section.points")
+        size = 2.0 * np.sqrt(area / np.pi) / across
+        along = [_samples(tag) for _, tag in outer]
+        extent = _extent(np.concatenate(along))
+        _sizes(size, inside, extent)
+        gmsh.model.addPhysicalGroup(2, [face], name="section")
+        gmsh.model.mesh.generate(2)
+        gmsh.model.mesh.setOrder(degree)
         mesh = mesh_from_gmsh(gmsh.model, MPI.COMM_SELF, gdim=2)[0]
-    finally:
-        gmsh.finalize()
     mesh.topology.create_connectivity(1, 2)
     facets = dolfinx.mesh.exterior_facet_indices(mesh.topology)
     return SectionMesh(mesh, facets, degree, area, size, extent, _middle(along))
@@ -109,33 +103,31 @@ def drawn_pieces(outline: Outline, knots: int) -> list[tuple[np.ndarray, np.ndar
     Returns:
         Points b(t) and their derivatives b′(t) of each piece, shape (knots, 2), mm.
     """
-    gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
-    try:
-        with _fillable():
-            gmsh.model.add("outline")
-            curves = outline.draw()
-            gmsh.model.occ.synchronize()
-            pieces = []
-            for curve in curves:
-                (start,), (end,) = gmsh.model.getParametrizationBounds(1, curve)
-                t = np.linspace(start, end, knots)
-                points, slopes = gmsh.model.getValue(1, curve, t), gmsh.model.getDerivative(1, curve, t)
-                pieces.append((points.reshape(-1, 3)[:, :2], (end - start) * slopes.reshape(-1, 3)[:, :2]))
-    finally:
-        gmsh.finalize()
+    with _drawn(outline) as curves:
+        gmsh.model.occ.synchronize()
+        pieces = []
+        for curve in curves:
+            (start,), (end,) = gmsh.model.getParametrizationBounds(1, curve)
+            t = np.linspace(start, end, knots)
+            points, slopes = gmsh.model.getValue(1, curve, t), gmsh.model.getDerivative(1, curve, t)
+            pieces.append((points.reshape(-1, 3)[:, :2], (end - start) * slopes.reshape(-1, 3)[:, :2]))
     return pieces
 
 
 @contextlib.contextmanager
-def _fillable() -> Iterator[None]:
-    """Context in which a failure of gmsh, a plain `Exception`, becomes the error for an outline."""
+def _drawn(outline: Outline) -> Iterator[list[int]]:
+    """Context of a gmsh model with an outline's curves; a failure of gmsh, a plain `Exception`, is the outline's."""
+    gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
     try:
-        yield
+        gmsh.model.add("section")
+        yield outline.draw()
     except Exception as error:
         if type(error) is not Exception:
             raise
         problem = f"the curve cannot be filled with triangles ({error}); does it touch or cross itself?"
         raise InputError(problem, "section.points") from None
+    finally:
+        gmsh.finalize()
 
 
 def _samples(curve: int) -> np.ndarray:

@@ -61,6 +61,16 @@ def put(data: dict[str, Any], entry: str, value: Any, place: str) -> None:
         group[last] = value
 
 
+def value_at(data: Any, entry: str, missing: Any = None) -> Any:
+    """The value at the path `entry` of nested data, or what is given for one that is missing."""
+    for part in entry.split("."):
+        try:
+            data = data[int(part)] if isinstance(data, list) else data[part]
+        except (KeyError, IndexError, ValueError, TypeError):
+            return missing
+    return data
+
+
 def _inside(group: Any, part: str, place: str) -> Any:
     if isinstance(group, list):
         child = group[_index(group, part, place)]

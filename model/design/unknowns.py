@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from coilset.model.base.entry import Strict
 from coilset.model.base.errors import InputError
 from coilset.model.case.names import EntryName, entry_name
-from coilset.model.case.settings import put
+from coilset.model.case.settings import put, value_at
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")]
 ONE, NONE = 1.0, 0.0  # factor and offset of an entry that takes the unknown itself
@@ -150,7 +150,7 @@ class Scale(Strict):
     def put(self, name: str, value: float, data: dict[str, Any]) -> None:
         """Scale the entries in the raw data of a case; raises InputError where there is nothing to scale."""
         for entry in self.driven(name):
-            numbers = list(_numbers(_value(data, entry), entry))
+            numbers = list(_numbers(value_at(data, entry), entry))
             if not numbers:
                 raise InputError(f"the case has no {entry} to scale; give it there, or give a range", f"find.{name}")
             for path, number in numbers:
@@ -202,18 +202,8 @@ def refuse_twice(find: Mapping[str, "Bounds | Choices | Scale"]) -> None:
             seen[entry] = name
 
 
-def _value(data: Any, entry: str) -> Any:
-    """The value at a path; None if there is none."""
-    for part in entry.split("."):
-        try:
-            data = data[int(part)] if isinstance(data, list) else data[part]
-        except (KeyError, IndexError, ValueError, TypeError):
-            return None
-    return data
-
-
 def _number(data: Any, entry: str) -> float:
-    value = _value(data, entry)
+    value = value_at(data, entry)
     return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else float("nan")
 
 

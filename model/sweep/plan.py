@@ -14,7 +14,7 @@ from coilset.model.base.entry import shown
 from coilset.model.base.errors import InputError, naming
 from coilset.model.base.yaml import read_data
 from coilset.model.case import Case, check, read_case_data
-from coilset.model.case.settings import located, put
+from coilset.model.case.settings import located, put, value_at
 from coilset.model.results.files.folder import whole
 from coilset.model.sweep.design import rows
 from coilset.model.sweep.engines.pool import Task
@@ -109,15 +109,12 @@ class Plan:
 
     def _base_value(self, name: str) -> Any:
         """The base case's value of an input, None if it is left out there."""
-        value = self.base
-        for part in self.entries(name)[0].split("."):
-            try:
-                value = value[int(part)] if isinstance(value, list) else value[part]
-            except (KeyError, IndexError, ValueError, TypeError):
-                if self.spec.design == "one_at_a_time":
-                    raise InputError("one_at_a_time needs this entry in the base case (or in change:)", name) from None
-                return None
-        return value
+        value = value_at(self.base, self.entries(name)[0], missing := object())
+        if value is not missing:
+            return value
+        if self.spec.design == "one_at_a_time":
+            raise InputError("one_at_a_time needs this entry in the base case (or in change:)", name)
+        return None
 
     def _check_cases(self, shard: Shard) -> Iterator[str]:
         """The keys, one after the other; empty those of other shards."""
