@@ -5,12 +5,13 @@ All lengths are in wire radii, from the wire's centre line: y towards the coil's
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coilset.meshes.boundary import Boundary
+from coilset.meshes.springs.functions import gauss
 from coilset.model.base.errors import InputError
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import SURFACE_POINTS, DiskRule, rim
@@ -95,7 +96,7 @@ class Segment(Section):
             over: number of points over the height.
             across: number of points across it.
         """
-        (x, a), (v, b) = (_gauss(n) for n in (over, across))
+        (x, a), (v, b) = (gauss(n) for n in (over, across))
         φ = 0.5 * self._last * (x[:, None] + 1.0)
         weights = 0.5 * self._last * a[:, None] * np.sin(φ) ** 2 * b / np.pi
         places = self._turned((np.sin(φ) * v).ravel(), (np.cos(φ) + 0.0 * v).ravel())
@@ -183,7 +184,7 @@ class Outlined(Section):
             raise InputError(problem, "section.points")
         first = np.cumsum([0, *along[:-1]])
         area *= np.repeat(self._sectors / np.add.reduceat(area, first), along)
-        s, w = _gauss(rings)
+        s, w = gauss(rings)
         k = self.boundary.hole
         ρ = k + 0.5 * (1.0 - k) * (s + 1.0)
         places = self._middle + (ρ[:, None, None] * b).reshape(-1, 2)
@@ -313,8 +314,3 @@ def _warping(section: Section, bend: float) -> Warping:
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-
-
-@cache
-def _gauss(number: int) -> tuple[np.ndarray, np.ndarray]:
-    return np.polynomial.legendre.leggauss(number)
