@@ -56,7 +56,7 @@ class Strict(BaseModel):
     @classmethod
     def _entries(cls, data: Any, validate: Any) -> Any:
         if not isinstance(data, dict):
-            return _told(cls, data, validate)
+            return _reported(cls, data, validate)
         earlier = tuple(name for name in cls.RENAMED if name in data)
         for name in earlier:
             if cls.RENAMED[name] in data:
@@ -91,7 +91,7 @@ def _known(group: type[BaseModel]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in group.model_fields.items()}
 
 
-def _told(group: type[BaseModel], data: Any, validate: Any) -> Any:
+def _reported(group: type[BaseModel], data: Any, validate: Any) -> Any:
     """A group from a value that is no mapping, which some groups accept; otherwise an error names their entries."""
     try:
         return validate(data)

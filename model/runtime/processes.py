@@ -72,15 +72,15 @@ def folder_of_mpirun() -> Iterator[dict[str, str]]:
 
 def first_rank() -> bool:
     """Whether this is rank 0 of a job, or no job at all; known before MPI is started, from what mpirun has set."""
-    return _told(("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"), 0) == 0
+    return _variable(("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"), 0) == 0
 
 
 def number_of_ranks() -> int:
     """Ranks of the job, 1 where there is none; known before MPI is started, from what mpirun has set."""
-    return _told(("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"), 1)
+    return _variable(("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"), 1)
 
 
-def _told(names: tuple[str, ...], otherwise: int) -> int:
+def _variable(names: tuple[str, ...], otherwise: int) -> int:
     """The number in the first of these variables of the environment that there is."""
     return int(next((os.environ[name] for name in names if name in os.environ), otherwise))
 

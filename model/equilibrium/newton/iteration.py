@@ -249,7 +249,7 @@ class Iteration:
             self.system.residual(X, self.load, self.load_factor, balance)
         found = imbalance(self.system, self.load, balance)
         self.ratio = found.ratio
-        self._tell(iteration, norm)
+        self._report(iteration, norm)
         tolerance = self.test.tolerance if self.load_factor == 1.0 else self.control.part_tolerance
         if self.test.is_met(found, tolerance, self.system.body.rounding(X.getArray(readonly=True))):
             return Reason.CONVERGED_FNORM_RELATIVE
@@ -271,7 +271,7 @@ class Iteration:
         self._crawled = self._crawled + 1 if short else 0
         return self._crawled >= CRAWLS
 
-    def _tell(self, iteration: int, norm: float) -> None:
+    def _report(self, iteration: int, norm: float) -> None:
         if not each_iteration.isEnabledFor(logging.DEBUG):
             return
         length = "" if self._step_length is None else f", step length {self._step_length:.3g}"
