@@ -8,7 +8,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.point.choice import rod_point
+from coilset.model.material.point.choice import rod_points
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 from coilset.model.section.shape import shear_by_force
 
@@ -74,7 +74,6 @@ def integrate(
     old_E: np.ndarray,
     old: np.ndarray,
     new: np.ndarray,
-    C: np.ndarray,
     S: np.ndarray,
     T: np.ndarray,
 ) -> bool:
@@ -85,19 +84,23 @@ def integrate(
     """
     S[:] = 0.0
     T[:] = 0.0
-    for k in range(len(coil.y)):
+    points = len(coil.y)
+    strain, tangent, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
+    for k in range(points):
         y, z = coil.y[k], coil.z[k]
         m = 1.0 + y * coil.bend
         stretched, before = m + E[0] + y * E[3], m + old_E[0] + y * old_E[3]
         if not stretched > 0.0:
             return False
-        e11 = math.log(stretched / before)
-        across, along = coil.across[k], coil.along[k]
-        g12 = (across * (E[1] - old_E[1]) + (E[2] - old_E[2]) * z) / m
-        g13 = (along * (E[1] - old_E[1]) - y * (E[2] - old_E[2])) / m
-        if rod_point(coil.p, old[k], e11, g12, g13, new[k], C) < 0:
-            return False
-        dA = coil.area[k] * m
+        strain[0, k] = math.log(stretched / before)
+        strain[1, k] = (coil.across[k] * (E[1] - old_E[1]) + (E[2] - old_E[2]) * z) / m
+        strain[2, k] = (coil.along[k] * (E[1] - old_E[1]) - y * (E[2] - old_E[2])) / m
+    if not rod_points(coil.p, old, strain, new, tangent, True, count):
+        return False
+    for k in range(points):
+        y, z, across, along = coil.y[k], coil.z[k], coil.across[k], coil.along[k]
+        C, m = tangent[:, k], 1.0 + y * coil.bend
+        stretched, dA = m + E[0] + y * E[3], coil.area[k] * m
         # ∂(ε₁₁, γ₁₂, γ₁₃)/∂E: (a, 0, 0, ya), b (0, across, z, 0), b (0, along, −y, 0)
         a, b = 1.0 / stretched, 1.0 / m
         σ, t2, t3 = new[k, 0] * dA, new[k, 1] * dA, new[k, 2] * dA
@@ -105,12 +108,12 @@ def integrate(
         S[1] += (t2 * across + t3 * along) * b
         S[2] += (t2 * z - t3 * y) * b
         S[3] += σ * a * y
-        c00 = (C[0, 0] * dA - σ) * a * a  # with the logarithm's second derivative
+        c00 = (C[0] * dA - σ) * a * a  # with the logarithm's second derivative
         ab, bb = dA * a * b, dA * b * b
-        c0q, cq0 = (C[0, 1] * across + C[0, 2] * along) * ab, (C[1, 0] * across + C[2, 0] * along) * ab
-        c0t, ct0 = (C[0, 1] * z - C[0, 2] * y) * ab, (C[1, 0] * z - C[2, 0] * y) * ab
-        q2, q3 = (C[1, 1] * across + C[1, 2] * along) * bb, (C[2, 1] * across + C[2, 2] * along) * bb
-        t2, t3 = (C[1, 1] * z - C[1, 2] * y) * bb, (C[2, 1] * z - C[2, 2] * y) * bb
+        c0q, cq0 = (C[1] * across + C[2] * along) * ab, (C[3] * across + C[6] * along) * ab
+        c0t, ct0 = (C[1] * z - C[2] * y) * ab, (C[3] * z - C[6] * y) * ab
+        q2, q3 = (C[4] * across + C[5] * along) * bb, (C[7] * across + C[8] * along) * bb
+        t2, t3 = (C[4] * z - C[5] * y) * bb, (C[7] * z - C[8] * y) * bb
         cqq, cqt = across * q2 + along * q3, across * t2 + along * t3
         ctq, ctt = z * q2 - y * q3, z * t2 - y * t3
         T[0, 0] += c00
@@ -172,13 +175,13 @@ def step(
     Returns:
         Whether there is an equilibrium, the axial force (compression positive, N) and the torque (N mm).
     """
-    E, old_E, C = np.empty(4), np.empty(4), np.empty((3, 3))
+    E, old_E = np.empty(4), np.empty(4)
     f, K, held = np.empty(4), np.empty((4, 4)), np.zeros(4, dtype=np.bool_)
     trial, scale = q.copy(), np.array([1.0, 1.0 / coil.R, 1.0, 1.0 / coil.R])
     kept_S, kept_T = S.copy(), T.copy()
     held[RISE], held[TURN] = not coil.by_force, not coil.free
     strains(coil, q, old_E)
-    good = integrate(coil, old_E, old_E, points, new, C, S, T) if elastic else True
+    good = integrate(coil, old_E, old_E, points, new, S, T) if elastic else True
     load = 0.0
     for iteration in range(MAX_ITERATIONS):
         if not good:
@@ -205,6 +208,6 @@ def step(
             f[RISE] = q[RISE] - value
         trial -= np.linalg.solve(K, f)
         strains(coil, trial, E)
-        good = integrate(coil, E, old_E, points, new, C, S, T)
+        good = integrate(coil, E, old_E, points, new, S, T)
     S[:], T[:] = kept_S, kept_T
     return False, 0.0, 0.0

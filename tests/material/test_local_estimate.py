@@ -21,7 +21,7 @@ def starts(p, seed, size):
         n *= np.sqrt(values[0] / (1.5 * n[0] ** 2 + 2 * n[1] ** 2 + 2 * n[2] ** 2))
         e = size * 2 * law.G * (n / np.linalg.norm(n) + 0.4 * rng.uniform(-1, 1, size=3))
         c = 2.0 * np.array([n[1:] @ n[1:], n[1:] @ e[1:], e[1:] @ e[1:]])
-        yield Start(b, 293.0, law.E / 1.5, n[0], e[0], 2 * law.G, *c), values
+        yield Start(b, law.E / 1.5, n[0], e[0], 2 * law.G, *c), values
 
 
 def errors(size):
@@ -29,7 +29,7 @@ def errors(size):
     p = library.load("ck15").parameters()
     found = []
     for start, values in starts(p, 4, size):
-        guess, exact = estimate(start, *values[:3], values[4]), solve(p, start, values)
+        guess, exact = estimate(start, *values[:3], values[4]), solve(p, 293.0, start, values)
         assert guess.loads
         assert exact.iterations > 0
         h = 1.0 + values[4] * (values[2] + start.cc)

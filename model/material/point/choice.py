@@ -16,7 +16,7 @@ from coilset.model.material.creep.flow import TIME
 from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.functions import SPIN
 from coilset.model.material.law.parts import OwnPoints, Parts
-from coilset.model.material.point import rod, rod_rows, solid_rows
+from coilset.model.material.point import rod, solid
 from coilset.model.material.point.back_stresses import applies, flow_of_rod
 from coilset.model.material.point.increment import advance
 from coilset.model.runtime.kernels import KERNEL, njit
@@ -31,17 +31,12 @@ def rod_points(
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """One increment of the rod's law at many points, as `rod_rows.return_map_points`, or with another law."""
+    """One increment of the rod's law at many points, as `rod.return_map_points`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
 
 
 def solid_points(law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray) -> bool:
-    """One increment of the law at many points, as in `solid_rows.return_map_points`, or with another law."""
-    raise NotImplementedError("only compiled loops call it")
-
-
-def rod_point(law: Any, old: np.ndarray, e11: float, g12: float, g13: float, new: np.ndarray, C: np.ndarray) -> int:
-    """One increment of the rod's law, as in `rod.return_map`, or with another law."""
+    """One increment of the law at many points, as in `solid.return_map_points`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
 
 
@@ -51,7 +46,7 @@ def _rod_points(
     law: Any, old: Any, de: Any, new: Any, tangent: Any, with_tangent: Any, count: Any
 ) -> Callable[..., bool]:
     if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, de, new, tangent, with_tangent, count: rod_rows.return_map_points(
+        return lambda law, old, de, new, tangent, with_tangent, count: rod.return_map_points(
             law, old, de, new, tangent, with_tangent, count
         )
     if law.instance_class is OwnPoints:
@@ -70,12 +65,12 @@ def own_points(
 
 @njit(**KERNEL)
 def one_by_one(
-    law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+    law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
 ) -> bool:
     """One increment at many points, one after the other."""
     good, c = True, np.empty((3, 3))
     for k in range(old.shape[0]):
-        count[k] = rod_point(law, old[k], de[0, k], de[1, k], de[2, k], new[k], c)
+        count[k] = rod_map(law, old[k], de[0, k], de[1, k], de[2, k], new[k], c)
         good = good and count[k] >= 0
         for i in range(3):
             for j in range(3):
@@ -85,7 +80,7 @@ def one_by_one(
 
 @njit(**KERNEL)
 def rod_map(law: Parts, old: np.ndarray, e11: float, g12: float, g13: float, new: np.ndarray, C: np.ndarray) -> int:
-    """`increment.advance` with the arguments of the rod's return mapping, in closed form where there is one."""
+    """`increment.advance` of a rod's point, in closed form where there is one."""
     count = -1
     if law.viscous[TIME] > 0.0 and law.plastic[SPIN] == 0.0:
         count = without_yield(law, old, (e11, g12, g13), new, C)
@@ -119,7 +114,7 @@ def advance_solids(
 @overload(solid_points, strict=False)
 def _solid_points(law: Any, old: Any, de: Any, new: Any, C: Any, count: Any) -> Callable[..., bool]:
     if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, de, new, C, count: solid_rows.return_map_points(law, old, de, new, C, count)
+        return lambda law, old, de, new, C, count: solid.return_map_points(law, old, de, new, C, count)
     return lambda law, old, de, new, C, count: solids_one_by_one(law, old, de, new, C, count)
 
 
@@ -133,10 +128,3 @@ def solids_one_by_one(
         count[k] = advance(law, old[k], de[k], new[k], C[k])
         good = good and count[k] >= 0
     return good
-
-
-@overload(rod_point, strict=False, inline="always")
-def _rod_point(law: Any, old: Any, e11: Any, g12: Any, g13: Any, new: Any, C: Any) -> Callable[..., int]:
-    if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, e11, g12, g13, new, C: rod.return_map(law, old, e11, g12, g13, new, C)
-    return lambda law, old, e11, g12, g13, new, C: rod_map(law, old, e11, g12, g13, new, C)

@@ -31,7 +31,7 @@ response leaves the surface although the plastic one with λ ≥ 0 moves inside:
 ever smaller steps that alternate between the two, the state stays on the surface with λ = 0 and a smaller κ; `_neutral`
 finds this κ. The plastic work is then of second order, so ζ is kept.
 
-Points several at a time (`rod_rows`) start from a closed estimate of the solution, from which one or two of Newton's
+Points several at a time (`local_rows`) start from a closed estimate of the solution, from which one or two of Newton's
 steps lead to rounding. With z = sΛ of group c and t = z/(2 + z), Padé's approximants φ ≈ (1 − z/2)/(1 + z/2) and ψ ≈
 1/(1 + z/2) make n = φ n₀ + ψ x e linear in t,
 
@@ -69,7 +69,7 @@ Polynomial = tuple[float, float, float]
 Estimate = namedtuple("Estimate", "b multiplier loads")
 # What the increment starts from. na, ea: n₀ and e of group a, with the metric's weight 3/2 to be applied; nn, ne, ee:
 # inner products of n₀ and e of group c.
-Start = namedtuple("Start", "b temperature ca na ea cc nn ne ee")
+Start = namedtuple("Start", "b ca na ea cc nn ne ee")
 # s, x of a group and their derivatives with respect to b*.
 Group = namedtuple("Group", "s ds x dx")
 # n = φ n₀ + y e in a group, y = ψ x, and the derivatives of φ and y with respect to b* and Λ (κ if neutral).
@@ -81,7 +81,7 @@ Correction = namedtuple("Correction", "b multiplier inverse g")
 # The solution: b*, ζ at half of the increment's plastic work, dζ/db* of its end, the Turns of both groups, and the
 # Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − ½ (n₀ + n):p) in (b*, Λ), or in (b*, κ) if neutral,
 # divided by its determinant.
-Local = namedtuple("Local", "iterations neutral b zeta dzeta a c r1b r1l r2b r2l")
+Local = namedtuple("Local", "iterations b zeta dzeta a c r1b r1l r2b r2l")
 
 
 @njit(**INLINE)
@@ -223,14 +223,8 @@ def halved(values: Functions) -> Functions:
     return k2, 0.5 * dk2, zeta, 0.5 * dzeta, kappa, 0.5 * dkappa
 
 
-@njit(**INLINE)
-def _half_way(p: np.ndarray, start: Start, b: float) -> Functions:
-    """The material functions at half of the plastic work, their slopes those in the end's b*."""
-    return halved(functions(p, start.b + 0.5 * (b - start.b), start.temperature))
-
-
 @njit(**KERNEL)
-def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
+def _neutral(p: np.ndarray, temperature: float, start: Start, values: Functions) -> Local:
     """The smaller κ for which the increment ends on the yield surface with λ = 0."""
     k2_start, _, zeta, _, kappa, _ = values
     na, ea = start.na, start.ea
@@ -247,7 +241,7 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
         dwork += 0.5 * kappa * (1.5 * xa * dxa * ea * ea + xc * dxc * start.ee)
         # With spin, the work may be slightly negative, to higher order; b* does not decrease.
         b = start.b + max(work, 0.0)
-        k2, dk2, _, _, _, _ = functions(p, b, start.temperature)
+        k2, dk2, _, _, _, _ = functions(p, b, temperature)
         r1 = nn - k2
         db = dwork if work > 0.0 else 0.0
         slope = 2.0 * ndxe - dk2 * db
@@ -255,7 +249,7 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
             a, c = Turn(1.0, xa, 0.0, 0.0, 0.0, dxa), Turn(1.0, xc, 0.0, 0.0, 0.0, dxc)
             inverse = 1.0 / (dk2 * db - 2.0 * ndxe)
             moves = inverse if work > 0.0 else 0.0  # else b* is kept
-            return Local(iteration, True, b, zeta, 0.0, a, c, -dk2 * moves, 2.0 * ndxe * moves, inverse, -db * inverse)
+            return Local(iteration, b, zeta, 0.0, a, c, -dk2 * moves, 2.0 * ndxe * moves, inverse, -db * inverse)
         if r1 > 0.0:
             low = kappa
         else:
@@ -277,21 +271,22 @@ def _frozen(start: Start, values: Functions, ga: Group, gc: Group) -> Local:
     multiplier = _multiplier(ga, gc, a, c, values[0], 0.0, 1e-15)
     ta, tc = turn(Group(ga.s, 0.0, ga.x, 0.0), multiplier), turn(Group(gc.s, 0.0, gc.x, 0.0), multiplier)
     slope = _square(ta, *a)[1] + _square(tc, *c)[1]
-    return Local(1, False, start.b, values[2], 0.0, ta, tc, 0.0, 0.0, -1.0 / slope, 0.0)
+    return Local(1, start.b, values[2], 0.0, ta, tc, 0.0, 0.0, -1.0 / slope, 0.0)
 
 
 @njit(**INLINE)
 def _failed(start: Start) -> Local:
     nothing = Turn(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return Local(FAILED, False, start.b, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
+    return Local(FAILED, start.b, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(**KERNEL)
-def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
+def solve(p: np.ndarray, temperature: float, start: Start, values: Functions) -> Local:
     """Solve the two local equations.
 
     Args:
         p: parameter array.
+        temperature: of the point, K.
         start: the increment's plastic part, a `Start`.
         values: `functions` where it starts.
 
@@ -304,7 +299,7 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
     high = low + 1.5 * middle_a * middle_a / start.ca + middle_c / start.cc
     b, multiplier, last = low, 0.0, math.inf
     for iteration in range(1, MAX_ITERATIONS):
-        middle = _half_way(p, start, b)
+        middle = halved(functions(p, start.b + 0.5 * (b - start.b), temperature))
         if not (values[0] > 0.0 and middle[0] > 0.0):
             break
         ga = group(start.ca, middle[2], middle[3], middle[4], middle[5])
@@ -317,14 +312,13 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
         newton = correction(at)
         step, inverse = newton.b, newton.inverse
         if iteration == 1 and at.r1 < 0.0:
-            return _neutral(p, start, values)
+            return _neutral(p, temperature, start, values)
         if iteration == 1 and newton.g > 0.0:
             return _frozen(start, values, ga, gc)
         if is_last(start, values[0], at, newton, b):
             # The last Newton step is taken in everything.
             return Local(
                 iteration,
-                False,
                 b + step,
                 middle[2] + middle[3] * step,
                 middle[3],
@@ -348,7 +342,7 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
             step = 0.5 * (low + high) - b
         last = step
         b += step
-        values = functions(p, b, start.temperature)
+        values = functions(p, b, temperature)
     return _failed(start)
 
 

@@ -1,18 +1,18 @@
 """The local problem of `local` at several points at a time, in loops without branches.
 
-The fast path of the law is four files: `local`, the two equations of a point; this one, which solves them at many
-points; `rod` with `rod_rows`, the stresses of a rod's points from it (`solid` with `solid_rows`: all six stresses).
+The fast path of the law is three files: `local`, the two equations of a point; this one, which solves them at many
+points; `rod`, the stresses of a rod's points from it (`solid`: all six stresses).
 
 Points are processed in groups. All points of a group get an elastic trial; those that flow are collected, and their
 local problems are solved together. A row holds one quantity of all points of a group, so that vector registers take
 neighbouring points. The loops are short: a processor works ahead in those that follow, while the terms of one wait for
 each other, only as far as its registers reach. They have no branches: points that do not load plastically, or do not
-converge, are marked and left to the return map of one point, as are temperature tables and hardening by a curve.
+converge, are marked and solved one by one by `local.solve`, as are temperature tables and hardening by a curve.
 """
 
 import numpy as np
 
-from coilset.model.material.law.functions import N_ROWS, NODES, ROWS_START, hardening, with_deviation
+from coilset.model.material.law.functions import N_ROWS, NODES, ROWS_START, functions, hardening, with_deviation
 from coilset.model.material.point.local import (
     Group,
     Local,
@@ -28,13 +28,14 @@ from coilset.model.material.point.local import (
     is_last,
     nearer,
     rough_turn,
+    solve,
     turn,
 )
-from coilset.model.runtime.kernels import INLINE, njit
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 GROUP = 64  # points processed together
 NEWTON = 8  # iterations at most
-RUNNING, CONVERGED, LEFT_OUT = 0.0, 1.0, 2.0  # how far a point has come
+RUNNING, CONVERGED, LEFT_OUT = 0.0, 1.0, 2.0  # how far a point has come in Newton's method
 
 # Rows, each name where its quantity begins. b*, k² and its slope at the start; the inner products of n₀ and e where the
 # plastic part begins, and β.
@@ -65,7 +66,7 @@ LAST_ZETA, JACOBIAN = KAPPA, GROUP_A
 
 @njit(**INLINE)
 def alone(p: np.ndarray) -> bool:
-    """Whether points are left to the return map of one point."""
+    """Whether each point's local problem is solved alone: k² from a temperature table, or by a curve."""
     return p[N_ROWS] != 1.0 or p[ROWS_START + NODES] > 0.0
 
 
@@ -106,20 +107,47 @@ def _move(first: int, last: int, flow: int, size: int, whole: int, place: np.nda
 
 
 @njit(**INLINE)
-def solve_rows(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> int:
+def solve_rows(p: np.ndarray, temperature: float, ca: float, cc: float, flow: int, whole: int, w: np.ndarray) -> None:
     """Solve the local problem of points with given rows up to BETA; see `local_of`.
+
+    `ENDED` is the number of each point's local iterations, -1 if there was no convergence.
 
     Args:
         p: parameter array of the law.
+        temperature: of the points, K.
         ca, cc: moduli of both groups of components.
-        size: number of points.
+        flow, whole: as `gather` returns them.
         w: the rows.
-
-    Returns:
-        Number of local iterations; `ENDED` is CONVERGED for the points that it is valid for.
     """
-    _estimate(p, ca, cc, size, w)
-    return _newton(p, ca, cc, size, w)
+    left_out = alone(p)
+    if not left_out:
+        _estimate(p, ca, cc, whole, w)
+        iterations = _newton(p, ca, cc, whole, w)
+        for j in range(whole):
+            converged = w[ENDED, j] == CONVERGED
+            w[ENDED, j] = iterations if converged else RUNNING
+            left_out |= not converged
+    if left_out:
+        _solve_alone(p, temperature, ca, cc, flow, w)
+
+
+@njit(**KERNEL)
+def _solve_alone(p: np.ndarray, temperature: float, ca: float, cc: float, flow: int, w: np.ndarray) -> None:
+    """Solve the local problems of points that Newton's method in rows leaves out."""
+    for j in range(flow):
+        if alone(p) or w[ENDED, j] == RUNNING:
+            values = functions(p, w[WORK, j], temperature)
+            _keep(solve(p, temperature, start_of(ca, cc, w, j), values), w, j)
+
+
+@njit(**INLINE)
+def _keep(local: Local, w: np.ndarray, j: int) -> None:
+    """Write what `local_of` reads, and the number of iterations."""
+    w[ENDED, j], w[B, j], w[LAST_ZETA, j], w[ZETA + 1, j] = local.iterations, local.b, local.zeta, local.dzeta
+    _keep_turn(local.a, w, TURN_A, j)
+    _keep_turn(local.c, w, TURN_C, j)
+    w[JACOBIAN, j], w[JACOBIAN + 1, j] = local.r1b, local.r1l
+    w[JACOBIAN + 2, j], w[JACOBIAN + 3, j] = local.r2b, local.r2l
 
 
 @njit(**INLINE)
@@ -127,7 +155,6 @@ def local_of(w: np.ndarray, j: int) -> Local:
     """The solution of a point."""
     return Local(
         1,
-        False,
         w[B, j],
         w[LAST_ZETA, j],
         w[ZETA + 1, j],
@@ -142,16 +169,24 @@ def local_of(w: np.ndarray, j: int) -> Local:
 
 @njit(**INLINE)
 def harden(p: np.ndarray, size: int, work: int, at: int, w: np.ndarray) -> None:
-    """Write k² and its slope into the rows from `at` on, at the b* of the row `work`."""
+    """Write k² and its slope into the rows from `at` on, at the b* of the row `work`, by the constants of (6.2.2)."""
     for j in range(size):
         w[at, j], w[at + 1, j] = hardening(p, ROWS_START, w[work, j])
+
+
+@njit(**KERNEL)
+def harden_alone(p: np.ndarray, temperature: float, size: int, w: np.ndarray) -> None:
+    """Write k² and its slope at the start, from a temperature table or a curve, too."""
+    for j in range(size):
+        values = functions(p, w[WORK, j], temperature)
+        w[K2, j], w[K2 + 1, j] = values[0], values[1]
 
 
 @njit(**INLINE)
 def start_of(ca: float, cc: float, w: np.ndarray, j: int) -> Start:
     """What a point's increment starts from."""
     na, ea, nn, ne, ee = w[PRODUCTS, j], w[PRODUCTS + 1, j], w[PRODUCTS + 2, j], w[PRODUCTS + 3, j], w[PRODUCTS + 4, j]
-    return Start(w[WORK, j], 0.0, ca, na, ea, cc, nn, ne, ee)
+    return Start(w[WORK, j], ca, na, ea, cc, nn, ne, ee)
 
 
 @njit(**INLINE)
@@ -231,9 +266,13 @@ def _approach(ca: float, cc: float, size: int, w: np.ndarray) -> None:
 @njit(**INLINE)
 def _turns(size: int, group: int, row: int, w: np.ndarray) -> None:
     for j in range(size):
-        t = turn(_group(w, group, j), w[MULTIPLIER, j])
-        w[row, j], w[row + 1, j], w[row + 2, j] = t.phi, t.y, t.phi_b
-        w[row + 3, j], w[row + 4, j], w[row + 5, j] = t.y_b, t.phi_l, t.y_l
+        _keep_turn(turn(_group(w, group, j), w[MULTIPLIER, j]), w, row, j)
+
+
+@njit(**INLINE)
+def _keep_turn(t: Turn, w: np.ndarray, row: int, j: int) -> None:
+    w[row, j], w[row + 1, j], w[row + 2, j] = t.phi, t.y, t.phi_b
+    w[row + 3, j], w[row + 4, j], w[row + 5, j] = t.y_b, t.phi_l, t.y_l
 
 
 @njit(**INLINE)

@@ -9,8 +9,25 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.law.functions import TEMPERATURE, elasticity, functions
-from coilset.model.material.point.local import Local, Start, solve, yield_crossing
+from coilset.model.material.law.functions import N_ROWS, TEMPERATURE, elasticity
+from coilset.model.material.point.local import Local, Start, yield_crossing
+from coilset.model.material.point.local_rows import (
+    BETA,
+    ENDED,
+    FLOWS,
+    FORM,
+    GROUP,
+    K2,
+    WORK,
+    alone,
+    gather,
+    harden,
+    harden_alone,
+    keep_start,
+    local_of,
+    solve_rows,
+    start_of,
+)
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 Vector = tuple[float, float, float]  # components 11, 12, 13
@@ -20,6 +37,15 @@ Beginning = namedtuple("Beginning", "beta slope n0 whole start")
 # The plastic part of an increment: β, σ, n₀ and e of the whole increment, e of the plastic part, n at its end, p, and
 # m = 1/(c + ζ) by component.
 Plastic = namedtuple("Plastic", "local beta slope n0 whole e n p m")
+
+STATE = 7  # columns of a point's state
+# Rows of the rod: stress, back stress and strain increment, which are given; σ of `rod.Beginning`; n₀.
+STRESS, BACK, STRAIN = FORM, FORM + 3, FORM + 6
+GIVEN = 9
+SLOPE = FORM + GIVEN
+NORMAL = SLOPE + 1
+TRIAL = TANGENT = NORMAL  # the stress of the elastic trial; the tangent: not needed at the same time
+ROWS = TANGENT + 9
 
 
 @njit(**INLINE)
@@ -58,7 +84,7 @@ def _combined(f: float, a: Vector, g: float, b: Vector) -> Vector:
 
 
 @njit(**INLINE)
-def begin(b: float, temperature: float, E: float, G: float, n0: Vector, e: Vector, k2: float) -> Beginning:
+def begin(b: float, E: float, G: float, n0: Vector, e: Vector, k2: float) -> Beginning:
     """Where the plastic part starts: n₀ there (n0 + β e), with e reduced to it."""
     beta = yield_crossing(inner(n0, n0), inner(n0, e), inner(e, e), k2)
     n0 = (n0[0] + beta * e[0], n0[1] + beta * e[1], n0[2] + beta * e[2])
@@ -67,7 +93,6 @@ def begin(b: float, temperature: float, E: float, G: float, n0: Vector, e: Vecto
     rest = 1.0 - beta
     start = Start(
         b,
-        temperature,
         E / 1.5,
         n0[0],
         rest * e[0],
@@ -154,55 +179,176 @@ def _dyads(weight: float, n: float, b: float, l: float, by_n: Vector, by_b: Vect
 
 
 @njit(**KERNEL)
-def return_map(
-    p: np.ndarray, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
-) -> int:
-    """One increment of the rod's law, of second order (see `local`), with its consistent tangent.
+def return_map_points(
+    p: np.ndarray,
+    old: np.ndarray,
+    de: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+    with_tangent: bool,
+    count: np.ndarray,
+) -> bool:
+    """One increment of the rod's law at many points.
 
     Args:
-        p: parameter array of the law, `Law.parameters()`.
-        old: the point's state at the start, shape (7,), or longer if the point has a temperature of its own; not
-            written.
-        de11, dg12, dg13: increments of ε11, γ12 = 2ε12, γ13.
-        new: the state at the end; always fully written.
-        C: d(σ11, τ12, τ13)/d(ε11, γ12, γ13), shape (3, 3), N/mm²; written.
+        p: parameter array of the law.
+        old: states at the start, shape (points, 7), or wider if each point has a temperature of its own; not written.
+        de: increments of ε11, γ12, γ13, shape (3, points).
+        new: states at the end; written.
+        tangent: d(σ11, τ12, τ13)/d(ε11, γ12, γ13) by rows, shape (9, points), N/mm²; written if `with_tangent`.
+        count: local iterations of each point, 0 if it stayed elastic, -1 if there was no convergence (then the state is
+            that at the start), shape (points,); written.
 
     Returns:
-        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence (then `new` is `old`, C
-        elastic).
+        Whether the law found a solution at all points.
     """
-    temperature = old[7] if old.shape[0] > 7 else p[TEMPERATURE]
-    E, G, _ = elasticity(p, temperature)
-    s = (old[0] + E * de11, old[1] + G * dg12, old[2] + G * dg13)
-    B = (old[3], old[4], old[5])
-    for i in range(3):
-        new[i] = s[i]
-    for i in range(3, old.shape[0]):
-        new[i] = old[i]
-    C[:] = 0.0
-    C[0, 0], C[1, 1], C[2, 2] = E, G, G
-    values = functions(p, old[6], temperature)
-    trial = active(s, B)
-    if inner(trial, trial) <= values[0] * (1.0 + 1e-12):
-        return 0
-    e = (E * de11 / 1.5, G * dg12, G * dg13)
-    beginning = begin(old[6], temperature, E, G, active((old[0], old[1], old[2]), B), e, values[0])
-    local = solve(p, beginning.start, values)
-    if local.iterations < 0:
+    own, good = old.shape[1] > STATE and p[N_ROWS] != 1.0, True  # each point has moduli of its own
+    w, place = np.empty((ROWS, GROUP)), np.empty(GROUP, np.uint64)  # without sign, which numba would test
+    new[:, STATE:] = old[:, STATE:]
+    for first in range(0, old.shape[0], 1 if own else GROUP):
+        size = 1 if own else min(GROUP, old.shape[0] - first)
+        temperature = old[first, STATE] if own else p[TEMPERATURE]
+        E, G, _ = elasticity(p, temperature)
+        _trial(p, temperature, E, G, old, de, first, size, w)
+        _elastic(E, G, first, size, with_tangent, w, new, tangent)
+        flow, whole = gather(size, GIVEN, place, w)
+        count[first : first + size] = 0
+        if flow == 0:
+            continue
+        _begin(E, G, whole, w)
+        solve_rows(p, temperature, E / 1.5, 2.0 * G, flow, whole, w)
+        _end(E, G, whole, with_tangent, w)
+        if not _scatter(first, flow, with_tangent, w, place, new, tangent, count):
+            good = False
+            for k in range(first, first + size):
+                if count[k] < 0:
+                    new[k] = old[k]
+    return good
+
+
+@njit(**INLINE)
+def _trial(
+    p: np.ndarray,
+    temperature: float,
+    E: float,
+    G: float,
+    old: np.ndarray,
+    de: np.ndarray,
+    first: int,
+    size: int,
+    w: np.ndarray,
+) -> None:
+    """The elastic response of a group, and which of its points flow."""
+    for k in range(size):
+        for i in range(STATE - 1):
+            w[STRESS + i, k] = old[first + k, i]
+        w[WORK, k] = old[first + k, STATE - 1]
+    if alone(p):
+        harden_alone(p, temperature, size, w)
+    else:
+        harden(p, size, WORK, K2, w)
+    for k in range(size):
+        e1, e2, e3 = de[0, first + k], de[1, first + k], de[2, first + k]
+        s1, s2, s3 = w[STRESS, k] + E * e1, w[STRESS + 1, k] + G * e2, w[STRESS + 2, k] + G * e3
+        n = active((s1, s2, s3), _vector(w, BACK, k))
+        w[STRAIN, k], w[STRAIN + 1, k], w[STRAIN + 2, k] = e1, e2, e3
+        w[TRIAL, k], w[TRIAL + 1, k], w[TRIAL + 2, k] = s1, s2, s3
+        w[FLOWS, k] = 0.0 if inner(n, n) <= w[K2, k] * (1.0 + 1e-12) else 1.0
+
+
+@njit(**INLINE)
+def _elastic(
+    E: float,
+    G: float,
+    first: int,
+    size: int,
+    with_tangent: bool,
+    w: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+) -> None:
+    """Write the elastic response of a group."""
+    if with_tangent:
+        for i in range(9):
+            modulus = 0.0 if i % 4 else E if i == 0 else G
+            for k in range(size):
+                tangent[i, first + k] = modulus
+    for k in range(size):
         for i in range(3):
-            new[i] = old[i]
-        return local.iterations
-    plastic = end(beginning, local)
+            new[first + k, i], new[first + k, 3 + i] = w[TRIAL + i, k], w[BACK + i, k]
+        new[first + k, 6] = w[WORK, k]
+
+
+@njit(**INLINE)
+def _scatter(
+    first: int,
+    flow: int,
+    with_tangent: bool,
+    w: np.ndarray,
+    place: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+    count: np.ndarray,
+) -> bool:
+    """Write the results of the points that flow to their places; whether all have converged."""
+    good = True
+    for j in range(flow):
+        k = np.uint64(first) + place[j]
+        count[k] = int(w[ENDED, j])
+        for i in range(STATE - 1):
+            new[k, i] = w[STRESS + i, j]
+        new[k, STATE - 1] = w[WORK, j]
+        if with_tangent:
+            for i in range(9):
+                tangent[i, k] = w[TANGENT + i, j]
+        good = good and w[ENDED, j] > 0.0
+    return good
+
+
+@njit(**INLINE)
+def _vector(w: np.ndarray, row: int, j: int) -> Vector:
+    return (w[row, j], w[row + 1, j], w[row + 2, j])
+
+
+@njit(**INLINE)
+def _begin(E: float, G: float, size: int, w: np.ndarray) -> None:
+    """Where the plastic part of the increment begins."""
+    for j in range(size):
+        n = active(_vector(w, STRESS, j), _vector(w, BACK, j))
+        e = (E / 1.5 * w[STRAIN, j], G * w[STRAIN + 1, j], G * w[STRAIN + 2, j])
+        beginning = begin(w[WORK, j], E, G, n, e, w[K2, j])
+        w[BETA, j], w[SLOPE, j] = beginning.beta, beginning.slope
+        w[NORMAL, j], w[NORMAL + 1, j], w[NORMAL + 2, j] = beginning.n0[0], beginning.n0[1], beginning.n0[2]
+        keep_start(beginning.start, w, j)
+
+
+@njit(**INLINE)
+def _end(E: float, G: float, size: int, with_tangent: bool, w: np.ndarray) -> None:
+    if not with_tangent:
+        for j in range(size):
+            _end_state(E, G, w, j)
+        return
+    for j in range(size):
+        plastic = _end_state(E, G, w, j)
+        first, second, third = softening(plastic, E, G)
+        Ea = E / 1.5
+        w[TANGENT, j], w[TANGENT + 1, j], w[TANGENT + 2, j] = E - Ea * first[0], -G * second[0], -G * third[0]
+        w[TANGENT + 3, j], w[TANGENT + 4, j], w[TANGENT + 5, j] = -Ea * first[1], G - G * second[1], -G * third[1]
+        w[TANGENT + 6, j], w[TANGENT + 7, j], w[TANGENT + 8, j] = -Ea * first[2], -G * second[2], G - G * third[2]
+
+
+@njit(**INLINE)
+def _end_state(E: float, G: float, w: np.ndarray, j: int) -> Plastic:
+    """Replace the initial state of a point by the final one; returns its plastic part."""
+    local = local_of(w, j)
+    e = (E / 1.5 * w[STRAIN, j], G * w[STRAIN + 1, j], G * w[STRAIN + 2, j])
+    n0, start = _vector(w, NORMAL, j), start_of(E / 1.5, 2.0 * G, w, j)
+    plastic = end(Beginning(w[BETA, j], w[SLOPE, j], n0, e, start), local)
     pl = plastic.p
-    new[0] = s[0] - E * pl[0]
-    new[1] = s[1] - 2.0 * G * pl[1]
-    new[2] = s[2] - 2.0 * G * pl[2]
+    w[STRESS, j] += E * (w[STRAIN, j] - pl[0])
+    w[STRESS + 1, j] += G * (w[STRAIN + 1, j] - 2.0 * pl[1])
+    w[STRESS + 2, j] += G * (w[STRAIN + 2, j] - 2.0 * pl[2])
     for i in range(3):
-        new[3 + i] = B[i] + local.zeta * pl[i]  # (3.1.8)
-    new[6] = local.b
-    taken = softening(plastic, E, G)
-    for i in range(3):
-        C[i, 0] -= taken[0][i] * (E / 1.5)
-        C[i, 1] -= taken[1][i] * G
-        C[i, 2] -= taken[2][i] * G
-    return local.iterations
+        w[BACK + i, j] += local.zeta * pl[i]  # (3.1.8)
+    w[WORK, j] = local.b
+    return plastic

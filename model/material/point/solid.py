@@ -12,8 +12,25 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.law.functions import TEMPERATURE, elasticity, functions
-from coilset.model.material.point.local import Local, Start, solve, yield_crossing
+from coilset.model.material.law.functions import N_ROWS, TEMPERATURE, elasticity
+from coilset.model.material.point.local import Local, Start, yield_crossing
+from coilset.model.material.point.local_rows import (
+    BETA,
+    ENDED,
+    FLOWS,
+    FORM,
+    GROUP,
+    K2,
+    WORK,
+    alone,
+    gather,
+    harden,
+    harden_alone,
+    keep_start,
+    local_of,
+    solve_rows,
+    start_of,
+)
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23
@@ -22,6 +39,14 @@ Pair = tuple[float, float]
 Beginning = namedtuple("Beginning", "beta n0 whole start")
 # The elastic tangent less the consistent one: a multiple of the deviator, and of n₀ n₀, n₀ e, e n₀ and e e.
 Loss = namedtuple("Loss", "identity nn ne en ee")
+
+STATE = 13  # columns of a point's state
+# Rows of the full stress state: stress, back stress and strain increment, which are given; n₀; the `Loss`.
+STRESS, BACK, STRAIN = FORM, FORM + 6, FORM + 12
+GIVEN = 18
+NORMAL = FORM + GIVEN
+LOSS = NORMAL + 6
+ROWS = LOSS + 5
 
 
 @njit(**INLINE)
@@ -59,12 +84,6 @@ def combined(f: float, a: Six, g: float, b: Six) -> Six:
 
 
 @njit(**INLINE)
-def six(row: np.ndarray, first: int) -> Six:
-    """Six entries of a row."""
-    return (row[first], row[first + 1], row[first + 2], row[first + 3], row[first + 4], row[first + 5])
-
-
-@njit(**INLINE)
 def bulk_modulus(E: float, G: float) -> float:
     """K of E and G."""
     return E * G / (3.0 * (3.0 * G - E))
@@ -92,14 +111,14 @@ def elastic(s: Six, dD: Six, E: float, G: float) -> Six:
 
 
 @njit(**INLINE)
-def begin(b: float, temperature: float, G: float, n0: Six, e: Six, k2: float) -> Beginning:
+def begin(b: float, G: float, n0: Six, e: Six, k2: float) -> Beginning:
     """Where the plastic part starts: n₀ there (n0 + β e)."""
     ne, ee = inner(n0, e), inner(e, e)
     beta = yield_crossing(inner(n0, n0), ne, ee, k2)
     rest = 1.0 - beta
     n0 = combined(1.0, n0, beta, e)
     c, nn, ne = 2.0 * G, inner(n0, n0), inner(n0, e)
-    return Beginning(beta, n0, e, Start(b, temperature, c, 0.0, 0.0, c, nn, rest * ne, rest * rest * ee))
+    return Beginning(beta, n0, e, Start(b, c, 0.0, 0.0, c, nn, rest * ne, rest * rest * ee))
 
 
 @njit(**INLINE)
@@ -107,47 +126,6 @@ def plastic_strain(beginning: Beginning, local: Local) -> Six:
     """p at the end of the plastic part."""
     t, m, rest = local.c, 1.0 / (beginning.start.cc + local.zeta), 1.0 - beginning.beta
     return combined(m * (1.0 - t.phi), beginning.n0, m * rest * (1.0 - t.y), beginning.whole)
-
-
-@njit(**KERNEL)
-def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
-    """One increment of the law for the full stress state, of second order (see `local`), with its consistent tangent.
-
-    Args:
-        p: parameter array of the law, `Law.parameters()`.
-        old: the point's state at the start, shape (13,), or longer if the point has a temperature of its own; not
-            written.
-        dD: strain increment, shape (6,), engineering shear strains.
-        new: the state at the end; always fully written.
-        C: dσ/dε, shape (6, 6), N/mm²; written.
-
-    Returns:
-        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence (then `new` is `old`, C
-        elastic).
-    """
-    temperature = old[13] if old.shape[0] > 13 else p[TEMPERATURE]
-    E, G, _ = elasticity(p, temperature)
-    hooke(E, G, C)
-    for i in range(old.shape[0]):
-        new[i] = old[i]
-    s, B = six(old, 0), six(old, 6)
-    trial = elastic(s, six(dD, 0), E, G)
-    n = active(trial, B)
-    values = functions(p, old[12], temperature)
-    count = 0
-    if not inner(n, n) <= values[0] * (1.0 + 1e-12):
-        beginning = begin(old[12], temperature, G, active(s, B), elastic_deviator(six(dD, 0), G), values[0])
-        local = solve(p, beginning.start, values)
-        if local.iterations < 0:
-            return local.iterations
-        count, pl = local.iterations, plastic_strain(beginning, local)
-        trial = combined(1.0, trial, -2.0 * G, pl)
-        B = combined(1.0, B, local.zeta, pl)  # (3.1.8)
-        new[12] = local.b
-        soften(loss(beginning, local), beginning.n0, beginning.whole, C)
-    for i in range(6):
-        new[i], new[6 + i] = trial[i], B[i]
-    return count
 
 
 @njit(**INLINE)
@@ -200,3 +178,134 @@ def soften(loss: Loss, n0: Six, e: Six, C: np.ndarray) -> None:
         C[3 + i, 3 + i] -= 0.5 * loss.identity
         for j in range(3):
             C[i, j] += loss.identity / 3.0
+
+
+@njit(**KERNEL)
+def return_map_points(
+    p: np.ndarray, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
+) -> bool:
+    """One increment of the law for the full stress state at many points.
+
+    Args:
+        p: parameter array of the law.
+        old: states at the start, shape (points, 13), or wider if each point has a temperature of its own; not written.
+        de: strain increments, engineering shear strains, shape (points, 6).
+        new: states at the end; written.
+        C: dσ/dε, shape (points, 6, 6), N/mm²; written.
+        count: local iterations of each point, 0 if it stayed elastic, -1 if there was no convergence (then the state is
+            that at the start), shape (points,); written.
+
+    Returns:
+        Whether the law found a solution at all points.
+    """
+    own, good = old.shape[1] > STATE and p[N_ROWS] != 1.0, True  # each point has moduli of its own
+    w, place = np.empty((ROWS, GROUP)), np.empty(GROUP, np.uint64)  # without sign, which numba would test
+    new[:, STATE:] = old[:, STATE:]
+    for first in range(0, old.shape[0], 1 if own else GROUP):
+        size = 1 if own else min(GROUP, old.shape[0] - first)
+        temperature = old[first, STATE] if own else p[TEMPERATURE]
+        E, G, _ = elasticity(p, temperature)
+        _trial(p, temperature, E, G, old, de, first, size, w, new)
+        for k in range(first, first + size):
+            hooke(E, G, C[k])
+        flow, whole = gather(size, GIVEN, place, w)
+        count[first : first + size] = 0
+        if flow == 0:
+            continue
+        _begin(G, whole, w)
+        solve_rows(p, temperature, 2.0 * G, 2.0 * G, flow, whole, w)
+        _end(E, G, whole, w)
+        for j in range(flow):
+            k = first + int(place[j])
+            count[k] = int(w[ENDED, j])
+            if count[k] > 0:
+                _write(G, w, j, new[k], C[k])
+            else:
+                good = False
+                for i in range(6):
+                    new[k, i] = old[k, i]
+    return good
+
+
+@njit(**INLINE)
+def _six(w: np.ndarray, row: int, j: int) -> Six:
+    return (w[row, j], w[row + 1, j], w[row + 2, j], w[row + 3, j], w[row + 4, j], w[row + 5, j])
+
+
+@njit(**INLINE)
+def _set(values: Six, w: np.ndarray, row: int, j: int) -> None:
+    for i in range(6):
+        w[row + i, j] = values[i]
+
+
+@njit(**INLINE)
+def _trial(
+    p: np.ndarray,
+    temperature: float,
+    E: float,
+    G: float,
+    old: np.ndarray,
+    de: np.ndarray,
+    first: int,
+    size: int,
+    w: np.ndarray,
+    new: np.ndarray,
+) -> None:
+    """The elastic response of a group, written as if it were the state at the end, and which of its points flow."""
+    for k in range(size):
+        for i in range(STATE - 1):
+            w[STRESS + i, k] = old[first + k, i]
+        w[WORK, k] = old[first + k, STATE - 1]
+        for i in range(6):
+            w[STRAIN + i, k] = de[first + k, i]
+    if alone(p):
+        harden_alone(p, temperature, size, w)
+    else:
+        harden(p, size, WORK, K2, w)
+    for k in range(size):
+        trial, B = elastic(_six(w, STRESS, k), _six(w, STRAIN, k), E, G), _six(w, BACK, k)
+        n = active(trial, B)
+        _set(trial, w, NORMAL, k)
+        w[FLOWS, k] = 0.0 if inner(n, n) <= w[K2, k] * (1.0 + 1e-12) else 1.0
+    for k in range(size):
+        for i in range(6):
+            new[first + k, i], new[first + k, 6 + i] = w[NORMAL + i, k], w[BACK + i, k]
+        new[first + k, STATE - 1] = w[WORK, k]
+
+
+@njit(**INLINE)
+def _begin(G: float, size: int, w: np.ndarray) -> None:
+    """Where the plastic part of the increment begins."""
+    for j in range(size):
+        n, e = active(_six(w, STRESS, j), _six(w, BACK, j)), elastic_deviator(_six(w, STRAIN, j), G)
+        beginning = begin(w[WORK, j], G, n, e, w[K2, j])
+        w[BETA, j] = beginning.beta
+        _set(beginning.n0, w, NORMAL, j)
+        keep_start(beginning.start, w, j)
+
+
+@njit(**INLINE)
+def _end(E: float, G: float, size: int, w: np.ndarray) -> None:
+    """Replace the initial states by the final ones, and write what the tangent loses."""
+    for j in range(size):
+        local, strain = local_of(w, j), _six(w, STRAIN, j)
+        start = start_of(2.0 * G, 2.0 * G, w, j)
+        beginning = Beginning(w[BETA, j], _six(w, NORMAL, j), elastic_deviator(strain, G), start)
+        pl = plastic_strain(beginning, local)
+        taken = loss(beginning, local)
+        trial = elastic(_six(w, STRESS, j), strain, E, G)
+        _set(combined(1.0, trial, -2.0 * G, pl), w, STRESS, j)
+        _set(combined(1.0, _six(w, BACK, j), local.zeta, pl), w, BACK, j)  # (3.1.8)
+        w[WORK, j] = local.b
+        w[LOSS, j], w[LOSS + 1, j], w[LOSS + 2, j], w[LOSS + 3, j] = taken.identity, taken.nn, taken.ne, taken.en
+        w[LOSS + 4, j] = taken.ee
+
+
+@njit(**INLINE)
+def _write(G: float, w: np.ndarray, j: int, new: np.ndarray, C: np.ndarray) -> None:
+    """Write the state of a point that flows, and take off its tangent what it loses."""
+    for i in range(STATE - 1):
+        new[i] = w[STRESS + i, j]
+    new[STATE - 1] = w[WORK, j]
+    taken = Loss(w[LOSS, j], w[LOSS + 1, j], w[LOSS + 2, j], w[LOSS + 3, j], w[LOSS + 4, j])
+    soften(taken, _six(w, NORMAL, j), elastic_deviator(_six(w, STRAIN, j), G), C)
