@@ -66,7 +66,7 @@ def error(law: Law, state: np.ndarray, increments: np.ndarray, new: np.ndarray) 
     """Root mean square error of the stress in `new` over the flow stress, of the first points."""
     some, components = slice(COMPARED), increments.shape[1]
     exact = heun.update(law, state[some], increments[some], tolerance=1e-7)[0]
-    flow = np.sqrt(1.5 * law.k_squared(exact[:, 2 * components]))
+    flow = np.sqrt(1.5 * law.functions(exact[:, 2 * components])[0])
     return np.sqrt((((new[some, :components] - exact[:, :components]) ** 2).sum(axis=1) / flow**2).mean())
 
 

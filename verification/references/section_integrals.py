@@ -57,7 +57,7 @@ def plastic_path(law: Law, start: np.ndarray, strains: np.ndarray, times: np.nda
 def shear_curve(law: Law, shears: np.ndarray) -> np.ndarray:
     """τ at increasing shear angles γ from rest, in pure shear; yield at 2τ² = k0², shape as given, MPa."""
     shears = np.asarray(shears, float)
-    limit = np.sqrt(0.5 * law.k_squared(0.0)) / law.G
+    limit = np.sqrt(0.5 * law.functions(0.0)[0]) / law.G
     stress = law.G * shears
     beyond = shears > limit
     if beyond.any():
@@ -72,7 +72,7 @@ def torque(law: Law, radius: float, twist: float) -> float:
 
     By Gauss's rule with 40 points over the plastic ring, where τ is smooth; the elastic core has a closed form.
     """
-    limit = min(radius, float(np.sqrt(0.5 * law.k_squared(0.0))) / law.G / twist)
+    limit = min(radius, float(np.sqrt(0.5 * law.functions(0.0)[0])) / law.G / twist)
     elastic = 0.5 * np.pi * law.G * twist * limit**4
     ξ, w = np.polynomial.legendre.leggauss(40)
     r = limit + 0.5 * (radius - limit) * (1.0 + ξ)

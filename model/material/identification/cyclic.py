@@ -24,7 +24,7 @@ from scipy.optimize import OptimizeResult, least_squares
 from coilset.model.base.errors import InputError
 from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fit import check_units
-from coilset.model.material.identification.result import Fit, coverage, robust_covariance
+from coilset.model.material.identification.result import Fit, coverage, robust_covariance, spread
 from coilset.model.runtime.kernels import KERNEL, njit
 
 MOST_TERMS = 4
@@ -258,12 +258,9 @@ def _result(
     known: tuple[float, float, float],
 ) -> CyclicFit:
     """Constants with their uncertainties, and the law along the tests."""
-    constants, covariance = _constants(found.x, terms), robust_covariance(found)
-    value = np.array(list(constants.values()))
-    moved = [list(_constants(found.x + step, terms).values()) for step in 1e-6 * np.eye(found.x.size)]
-    gradient = (np.array(moved) - value).T / 1e-6
-    spread = np.sqrt(np.einsum("ij,jk,ik->i", gradient, covariance, gradient))
-    standard = dict(zip(constants, spread.tolist(), strict=True))
+    constants = _constants(found.x, terms)
+    deviations = spread(lambda x: _constants(x, terms), found.x, robust_covariance(found))
+    standard = dict(zip(constants, deviations.tolist(), strict=True))
     uncertainty = {name: coverage(found.x.size) * one for name, one in standard.items()}
     stresses, scatter, length, work = [], [], 0.0, 0.0
     size, back = _unpacked(found.x, terms)

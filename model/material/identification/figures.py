@@ -12,20 +12,8 @@ from coilset.model.material.identification.result import Fit
 from coilset.model.material.law.law import Law
 from coilset.model.material.programs import STRAINS, STRESSES, History, Program
 
-SYMBOLS = {
-    "eps11": "ε11",
-    "eps22": "ε22",
-    "eps33": "ε33",
-    "gamma12": "γ12",
-    "gamma13": "γ13",
-    "gamma23": "γ23",
-    "sigma11": "σ11",
-    "sigma22": "σ22",
-    "sigma33": "σ33",
-    "tau12": "τ12",
-    "tau13": "τ13",
-    "tau23": "τ23",
-}
+GREEK = {"eps": "ε", "gamma": "γ", "sigma": "σ", "tau": "τ"}
+SYMBOLS = {name: GREEK[name[:-2]] + name[-2:] for name in STRAINS["solid"] + STRESSES["solid"]}
 
 
 def _figure(width: float, height: float) -> Figure:

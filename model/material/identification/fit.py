@@ -56,12 +56,15 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
     kinds = {kind: [test for test in tests if test.kind == kind] for kind in ("tension", "torsion", "combined")}
     isotropic = bool(tests) and len(kinds["tension"]) == len(tests)
     saturates = not isotropic if saturates is None else saturates
+    model = FittedLaw(float(G), float(nu), saturates, isotropic)
     if isotropic:
-        return _fit_hardening(FittedLaw(float(G), float(nu), saturates, isotropic), tests, float(temperature))
+        values, reach = hardening(model, tests, NO_BACK_STRESS, first_starts(model))
+        values |= {name: 0.0 for name in NORMALITY}
+        minima = _minima(model, bend_starts(model, values, tests, reach), model.names, tests)
+        return result(model, minima, tests, float(temperature))
     for kind, use in (("tension", "k²"), ("torsion", "ζ"), ("combined", "κ")):
         if not kinds[kind]:
             raise InputError(f"there is no {kind} test among the data; without it {use} cannot be identified")
-    model = FittedLaw(float(G), float(nu), saturates)
     proportional, names = kinds["tension"] + kinds["torsion"], [*model.hardening, *KINEMATIC]
     values, reach = hardening(model, kinds["tension"], NO_BACK_STRESS, first_starts(model))
     starts = _closest(model, kinematic_starts(model, values, proportional, reach), proportional, 2)
@@ -84,15 +87,6 @@ def check_units(test: Test, G: float, nu: float) -> None:
                 f"at a stress of {stress[first]:.4g} its strain is {strain[first]:.4g}, far more than the elastic "
                 f"{stress[first] / moduli[component]:.2g}; give strain as a number, 0.02 for 2 %, and stress in N/mm²"
             )
-
-
-def _fit_hardening(model: FittedLaw, tests: tuple[Test, ...], temperature: float) -> Fit:
-    """k² alone, from tension tests alone."""
-    values, reach = hardening(model, tests, NO_BACK_STRESS, first_starts(model))
-    values |= {name: 0.0 for name in NORMALITY}
-    return result(
-        model, _minima(model, bend_starts(model, values, tests, reach), model.names, tests), tests, temperature
-    )
 
 
 def _adjust(model: FittedLaw, values: dict[str, float], names: Sequence[str], tests: Sequence[Test]) -> Minimum:

@@ -1,6 +1,6 @@
 """Result of a fit: the constants in the form of a material file, and their uncertainties."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -110,10 +110,14 @@ def _constants(model: FittedLaw, values: Variables) -> dict[str, float]:
 
 def _spread(model: FittedLaw, values: Variables, found: OptimizeResult) -> np.ndarray:
     """Standard deviations of the file's constants."""
-    covariance = robust_covariance(found)
     start = {name: values[name] for name in model.names}
-    moved = [list(_constants(model, moved_by(start, step)).values()) for step in 1e-6 * np.eye(len(start))]
-    gradient = (np.array(moved) - list(_constants(model, start).values())).T / 1e-6
+    return spread(lambda x: _constants(model, moved_by(start, x)), np.zeros(len(start)), robust_covariance(found))
+
+
+def spread(constants: Callable[[np.ndarray], dict[str, float]], x: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """Standard deviations of constants as functions of variables with a covariance."""
+    here = np.array([*constants(x).values()])
+    gradient = (np.array([[*constants(x + step).values()] for step in 1e-6 * np.eye(x.size)]) - here).T / 1e-6
     return np.sqrt(np.einsum("ij,jk,ik->i", gradient, covariance, gradient))
 
 

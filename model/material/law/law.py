@@ -97,11 +97,6 @@ class Law:
         """Whether plastic work heats the points."""
         return self.data.heating is not None
 
-    @property
-    def n_state(self) -> int:
-        """Length of a rod point's state."""
-        return self.columns(3)
-
     def columns(self, components: int) -> int:
         """Length of the state of a point with 3 or 6 stresses, without what creep adds."""
         return 2 * components + 1 + self.is_adiabatic + further_columns(components, self.n_terms)
@@ -231,10 +226,6 @@ class Law:
     def first_yield(self, temperature: float | None = None) -> float:
         """`yield_stress` at a temperature of the table, K; default is the reference temperature."""
         return math.sqrt(1.5 * float(self.functions(0.0, temperature)[0]))
-
-    def k_squared(self, work: npt.ArrayLike) -> np.ndarray:
-        """k² at the reference temperature, N²/mm⁴."""
-        return self.functions(work)[0]
 
     def _row(self, i: int, at: Constants) -> np.ndarray:
         row = np.zeros(fn.ROW_LENGTH)

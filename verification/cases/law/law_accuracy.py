@@ -50,7 +50,7 @@ def run(study: Study) -> None:
     law, errors = library.load("ck15"), {}
     for name, path in PATHS.items():
         exact = follow(path, "heun", 1e-8, 1e-3)
-        flow = np.sqrt(1.5 * law.k_squared(exact[:, 6]))[:, None]
+        flow = np.sqrt(1.5 * law.functions(exact[:, 6])[0])[:, None]
         for method, (integrator, tolerance, _) in METHODS.items():
             states = [follow(path, integrator, tolerance, h) for h in INCREMENTS]
             errors[name, method] = [(np.abs(s - exact)[:, :3] / flow).max() for s in states]

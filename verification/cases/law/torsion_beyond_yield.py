@@ -45,7 +45,7 @@ def twist(law: Law, rings: int) -> Twisted:
 def reference(law: Law, ϑ: float) -> float:
     """Torque at the twist ϑ per length, N mm."""
     if law.name == "ideal_plastic":
-        return nadai_torque(float(np.sqrt(0.5 * law.k_squared(0.0))), law.G, RADIUS, ϑ)
+        return nadai_torque(float(np.sqrt(0.5 * law.functions(0.0)[0])), law.G, RADIUS, ϑ)
     return torque(law, RADIUS, ϑ)
 
 
@@ -79,7 +79,7 @@ def draw(study: Study, found: dict[str, tuple[Law, Twisted]]) -> None:
             exact = [reference(law, shear / RADIUS) / 1000 for shear in some]
             left.plot(100 * some, exact, "o", color=colour, ms=3.5, mfc="none")
             if name == "ideal_plastic":
-                curve = np.minimum(law.G * SHEAR * radii / RADIUS, np.sqrt(0.5 * law.k_squared(0.0)))
+                curve = np.minimum(law.G * SHEAR * radii / RADIUS, np.sqrt(0.5 * law.functions(0.0)[0]))
             else:
                 curve = shear_curve(law, SHEAR * radii / RADIUS)
             right.plot(radii, curve, "-", color=colour, lw=0.9)

@@ -46,7 +46,7 @@ class Ledger:
         points, κ = analysis.rod.rule, analysis.setup.placement.curvature
         g = 1.0 - κ[..., None] * analysis.setup.wire_radius[:, None, None] * points.points[:, 0]  # fibre over axis
         self.volume = section[..., None] * g * points.weights
-        self.history = np.zeros((*self.volume.shape, analysis.law.n_state))
+        self.history = np.zeros((*self.volume.shape, analysis.law.columns(3)))
         self.travel = self.force = self.work = self.back = 0.0
         self.rows: list[tuple[float, ...]] = []
 
