@@ -29,7 +29,7 @@ DRAWN = 240  # springs of the generator among which to choose
 PARTS = 0.5, 0.9  # of the travel, at which forces are compared
 FINE_MESH, FINE_SECTION, FINE_ACCURACY = {"elements_per_turn": 64}, {"radial": 16, "angular": 64}, 0.0002
 FINE_BEDDING = 1.0  # over Young's modulus
-FRESH = frozenset({52, 73, 141, 208})  # springs with references made after the factors were chosen
+FRESH = frozenset({18, 52, 73, 141, 206, 208, 218})  # springs with references made after the factors were chosen
 
 
 class Number(NamedTuple):
