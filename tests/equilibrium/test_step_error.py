@@ -28,9 +28,6 @@ def run(example, *settings):
 def test_accuracy_in_per_cent_and_as_a_number(example, given, found):
     data = read_case_data(example)
     assert check(data | {"accuracy": given}).accuracy == pytest.approx(found, rel=1e-15)
-    grouped = check(data | {"loading": {"accuracy": given, "program": data["loading"]}})
-    assert grouped.accuracy == pytest.approx(found, rel=1e-15)
-    assert grouped.loading == check(data).loading
     assert check(data).accuracy == 0.002
 
 

@@ -95,7 +95,9 @@ def test_relaxation_of_a_torsion_bar(hours, known):
     assert end / start == pytest.approx(closed, rel=2e-3)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=pytest.mark.slow) if kind == "warping" else kind for kind in KINDS]
+)
 def test_stationary_torsion(kind):
     """Steady creep at constant torque M: τ = τR (r/R)^(1/N) with M = 2π R³ τR/(3 + 1/N), whatever came before."""
     exponent, torque = 4.0, 8000.0

@@ -194,8 +194,8 @@ def test_ranks_turn_a_spring_onto_its_arbor_alike():
 
 
 def test_a_coiled_spring_holds_more_when_it_is_wound_further(ck15):
-    """Coiling leaves tension at the inside, against the compression of winding further; opened, the spring yields at
-    once: it keeps more than twice the set."""
+    """Coiling leaves tension at the inside, against the compression of winding further, which stays elastic; opened,
+    the spring yields at once and keeps a quarter of the turn."""
     left = []
     spring = {"wire_diameter": WIRE, "mean_diameter": 24.0, "turns": 2.0, "pitch": 4.2, "made_by": "coiling"}
     for turn in (15.0, -15.0):
@@ -205,7 +205,8 @@ def test_a_coiled_spring_holds_more_when_it_is_wound_further(ck15):
         mesh = MESH | {"section": {"radial": 4, "angular": 16}}
         _, summary = solved(spring, loading, material="ck15", heads=free, mesh=mesh)
         left.append(summary["turn_set_deg"] / turn)
-    assert 0.0 < 2.0 * left[0] < left[1]
+    assert abs(left[0]) < 1e-9
+    assert 0.2 < left[1] < 0.3
 
 
 def test_a_restart_with_hooks_goes_on_to_the_same_bits(resumed_after):
