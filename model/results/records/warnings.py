@@ -304,8 +304,7 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
             return
         if error > allowed:
             worst[name] = required * error / allowed
-            stress = name == "residual_shear_inside_MPa"
-            size = f"{error:.2g} MPa" if stress else f"{100 * worst[name]:.2g} %"
+            size = f"{100 * worst[name]:.2g} %" if name == "force_N" else f"{error:.2g} {name.rpartition('_')[2]}"
             words.append(f"{size} of the {NUMBERS[name]}")
     if worst:
         largest = max(worst, key=lambda name: worst[name])
