@@ -150,7 +150,7 @@ def steps(
         section = entries["mesh"]["section"]
         if section["kind"] != "warping":
             entries["mesh"] |= fine.mesh
-            if fine.shaped or ("wire_diameter" in entries["spring"] and not pressing.coiled):
+            if fine.shaped or (entries["spring"].get("wire") is None and not pressing.coiled):
                 section |= fine.section
         run = Analysis(check_entries(entries, Case), MPI.COMM_SELF, detailed=False).run().steps
     return [[step for step in run if program[step.phase][0] == branch] for branch in range(len(ends))]

@@ -10,6 +10,7 @@ from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 from coilset.model.results.records.releases import FREE, is_turned, last_release
+from coilset.model.results.records.units import unit_of
 from coilset.model.results.records.working import working_warnings
 from coilset.model.results.stresses import shear_inside
 from coilset.model.section import surface
@@ -304,7 +305,7 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
             return
         if error > allowed:
             worst[name] = required * error / allowed
-            size = f"{100 * worst[name]:.2g} %" if name == "force_N" else f"{error:.2g} {name.rpartition('_')[2]}"
+            size = f"{100 * worst[name]:.2g} %" if name == "force_N" else f"{error:.2g} {unit_of(name)}"
             words.append(f"{size} of the {NUMBERS[name]}")
     if worst:
         largest = max(worst, key=lambda name: worst[name])
