@@ -76,7 +76,7 @@ PARAMETERS = {
     "scripts/commands/sheet.py": 1,
     "scripts/commands/solve.py": 1,
 }
-CTYPES = {"model/equilibrium/system/aij.py", "model/results/files/alternating.py", "model/runtime/processes.py"}
+CTYPES = {"model/equilibrium/system/aij.py", "model/runtime/processes.py"}
 
 
 def test_a_folder_has_at_most_fourteen_files():

@@ -34,18 +34,15 @@ def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.
     return surface.peak(stress[among], setup.section_turns[among], setup.inside)
 
 
-def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, Any]:
-    """The maximum residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees.
+def peak_entries(name: str, top: surface.Peak | None, unit: str = "MPa") -> dict[str, Any]:
+    """Entries of the summary on a peak: its value, its turn, and its angle from the coil's inside; None without it."""
+    names = (f"{name}_{end}" for end in (unit, "turn", "angle_deg"))
+    return dict(zip(names, (None,) * 3 if top is None else (top.value, top.turn, top.angle), strict=True))
 
-    None before the release, and of half a turn or less, all of which is its middle.
-    """
-    top = None if snapshot is None or is_middle(setup).all() else shear_peak(setup, snapshot, ends=True)
-    value, turn, angle = (None,) * 3 if top is None else (top.value, top.turn, top.angle)
-    return {
-        "residual_shear_ends_max_MPa": value,
-        "residual_shear_ends_max_turn": turn,
-        "residual_shear_ends_max_angle_deg": angle,
-    }
+
+def ends_peak(setup: Setup, released: Snapshot | None) -> surface.Peak | None:
+    """That of the ends' turns; None before the release, and of half a turn or less, all of which is its middle."""
+    return None if released is None or is_middle(setup).all() else shear_peak(setup, released, ends=True)
 
 
 def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
@@ -128,17 +125,14 @@ def beyond_coil(setup: Setup, released: Snapshot | None, snapshots: Sequence[Sna
 
 
 def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
-    """The maximum shear and equivalent stress on the surface in the snapshots, MPa, and where: turn, and angle from
-    the inside of the coil, degrees; None without snapshots."""
-    found = {}
+    """The maximum shear and equivalent stress on the surface in the snapshots; None without snapshots."""
+    found: dict[str, Any] = {}
     for name, stress in (("shear", surface.shear), ("equivalent", surface.equivalent)):
         tops = [
             surface.peak(stress(shot.surface_state, shot.components), setup.section_turns, setup.inside)
             for shot in snapshots
         ]
-        top = max(tops, key=lambda one: one.value, default=None)
-        for unit, value in (("MPa", "value"), ("turn", "turn"), ("angle_deg", "angle")):
-            found[f"{prefix}{name}_surface_max_{unit}"] = getattr(top, value) if top else None
+        found |= peak_entries(f"{prefix}{name}_surface_max", max(tops, key=lambda one: one.value, default=None))
     return found
 
 
@@ -150,8 +144,7 @@ def plastic_work(setup: Setup, result: Result) -> dict[str, Any]:
     ]
     top = max(tops, key=lambda one: one.value)
     return {
+        **peak_entries("plastic_work_max", top if top.value > 0.0 else None, "N_per_mm2"),
         "plastic_work_max_N_per_mm2": max([top.value, *(step.plastic_work_max_N_per_mm2 for step in result.steps)]),
-        "plastic_work_max_turn": top.turn if top.value > 0.0 else None,
-        "plastic_work_max_angle_deg": top.angle if top.value > 0.0 else None,
         "plastic_work_known_to_N_per_mm2": setup.limits.plastic_work,
     }

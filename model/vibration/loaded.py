@@ -63,7 +63,7 @@ def _saved(folder: Path, case: Case) -> Saved:
         checkpoint = Checkpoint(folder, case, number)
         if number == 0 and refusal is None:
             checkpoint.require()
-        if not checkpoint.state.path.exists():
+        if not checkpoint.exists():
             continue
         try:
             return checkpoint.load(MPI.COMM_WORLD)

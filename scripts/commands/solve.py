@@ -136,12 +136,8 @@ class _Runs:
             if ask:
                 ask(step)
 
-        try:
-            with output.iterations():
-                analysis.run(report, checkpoint.save, self.interrupt.check)
-        finally:
-            if comm.rank == 0:
-                checkpoint.over()
+        with output.iterations():
+            analysis.run(report, checkpoint.save, self.interrupt.check)
         self.best = analysis
         return analysis
 

@@ -22,7 +22,6 @@ from coilset.model.equilibrium.path.step_sizes import Position
 from coilset.model.equilibrium.settings import Drive
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.results.files import state_file
-from coilset.model.results.files.alternating import TwoFiles
 from coilset.model.results.files.folder import make, whole
 from coilset.model.results.files.step_journal import StepJournal
 from coilset.model.results.records.provenance import changed, provenance
@@ -62,7 +61,7 @@ class Checkpoint:
     def __init__(self, folder: str | Path, case: Case, finer: int = 0) -> None:
         self.folder = Path(folder) / (f"checkpoint-{finer}" if finer else "checkpoint")
         self.case, self.provenance = case.model_dump(mode="json"), provenance(case)
-        self.journal, self.state = StepJournal(self.folder / "steps.jsonl"), TwoFiles(self.folder / "state.npz")
+        self.journal, self.state = StepJournal(self.folder / "steps.jsonl"), self.folder / "state.npz"
         self._snapshots = 0  # that are written, or were read
 
     # ---- saving ----------------------------------------------------------------------------------------------------
@@ -87,20 +86,16 @@ class Checkpoint:
         for number, snapshot in enumerate(result.snapshots[self._snapshots :], self._snapshots):
             self._save_snapshot(number, snapshot)
         self._snapshots = len(result.snapshots)
-        with self.state.next() as file:
+        with whole(self.state) as partial, open(partial, "wb") as file:
             state_file.write(file, about, fields, mode)
 
     def _save_snapshot(self, number: int, snapshot: Snapshot) -> None:
         with whole(self.folder / f"snapshot-{number:02d}.npz") as partial, open(partial, "wb") as file:
             np.savez(file, **asdict(snapshot))
 
-    def over(self) -> None:
-        """Nothing more will be saved."""
-        self.state.over()
-
     def exists(self) -> bool:
         """Whether there is something to resume from."""
-        return self.state.path.exists()
+        return self.state.exists()
 
     def require(self) -> None:
         """Raise InputError if there is nothing to resume from."""
@@ -122,7 +117,7 @@ class Checkpoint:
     def _read(self) -> Saved:
         """On rank 0; a damaged file can fail in any way: as zip, as array, as JSON, as record."""
         self.require()
-        path = self.state.path
+        path = self.state
         try:
             about, fields, mode = state_file.read(path)
             self._compare(about)

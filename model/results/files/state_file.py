@@ -22,7 +22,7 @@ def write(
     """Write a state.
 
     Args:
-        file: the file, empty or to be written over from its beginning.
+        file: an empty one.
         about: plain data beside the fields.
         fields: name → numbers of the field.
         others: name → another array, with an entry of its own.

@@ -40,9 +40,6 @@ def provenance(case: Case) -> dict[str, object]:
 def origin(case: Case) -> dict[str, Any]:
     """Everything needed to run a case again and to recognise it, so that results are self-contained.
 
-    Args:
-        case: Case.
-
     Returns:
         Plain data: the `case` with all its defaults, the constants of its `material`, digests of the `contents` that it
         names, `program` (digest of its content, and the commit in a checkout), `versions`, `date` (UTC) and `platform`.

@@ -70,13 +70,8 @@ def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
 
 
 def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
-    """Entries of the summary: the rate between 30 and 70 % of the travel to block, and the requested rates.
-
-    Args:
-        setup: Setup.
-        result: Result.
-        release: the last release, if there was one.
-    """
+    """Entries of the summary: the rate between 30 and 70 % of the travel to block, before and after the last release,
+    and the requested rates."""
     travel, force = first_compression(result.steps)
     block, after = setup.spring.block_height, None
     if release is not None:
@@ -97,13 +92,7 @@ def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, An
 
 
 def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
-    """Entries of the summary of a spring that is loaded by a torque about its axis; None of any other.
-
-    Args:
-        setup: Setup.
-        result: Result.
-        release: the last release, if there was one.
-    """
+    """Entries of the summary of a spring that is loaded by a torque about its axis; None of any other."""
     names = "turn_max_deg", "torque_max_Nmm", "turn_rate_Nmm_per_deg", "turn_rate_after_Nmm_per_deg", "turn_set_deg"
     if not is_turned(setup, result.steps):
         return dict.fromkeys(names)

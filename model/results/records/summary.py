@@ -20,6 +20,7 @@ from coilset.model.results.stresses import (
     bending,
     beyond_coil,
     ends_peak,
+    peak_entries,
     peaks,
     plastic_work,
     shear_inside,
@@ -42,16 +43,11 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
 
 
 def summary(setup: Setup, result: Result) -> Summary:
-    """The summary of a run; free length, set and residual stress are those after the last release.
-
-    Args:
-        setup: Setup.
-        result: Result, complete or not; its snapshots are complete on rank 0 only.
-    """
+    """The summary of a run, complete or not, on rank 0; free length, set and residual stress are those after the last
+    release."""
     freed = releases(setup, result)
     release = freed[-1] if freed else None
     shot = release.snapshot if release else None
-    residual = shear_peak(setup, shot) if shot else None
     inside, inside_turn = shear_inside(setup, shot) if shot else (None, None)
     axis, buckled = setup.spring.measured_axis, buckling(result.steps, setup.mean_diameter)
     return Summary(
@@ -64,11 +60,9 @@ def summary(setup: Setup, result: Result) -> Summary:
         **rates(setup, result, release),
         force_max_N=max((step.force_N for step in result.steps), default=0.0, key=abs),
         block_height_mm=setup.spring.block_height,
-        residual_shear_max_MPa=residual.value if residual else None,
-        residual_shear_max_turn=residual.turn if residual else None,
-        residual_shear_max_angle_deg=residual.angle if residual else None,
+        **peak_entries("residual_shear_max", shear_peak(setup, shot) if shot else None),
         shear_max_MPa=max(shear_peak(setup, one).value for one in result.snapshots),
-        **ends_peak(setup, shot),
+        **peak_entries("residual_shear_ends_max", ends_peak(setup, shot)),
         residual_shear_inside_MPa=inside,
         residual_shear_inside_turn=inside_turn,
         shear_inside_max_MPa=max((shear_inside(setup, one)[0] for one in result.snapshots), key=abs),
@@ -159,7 +153,6 @@ def _entry(setup: Setup, result: Result, state: WorkingState) -> dict[str, Any]:
         return {f"{state.kind}_wanted": state.value, "reason": state.reason}
     stresses = nominal(setup, state.force)
     inside, turn = shear_inside(setup, shot)
-    peak = shear_peak(setup, shot)
     return {
         f"{state.kind}_wanted": state.value,
         "reason": "",
@@ -171,9 +164,7 @@ def _entry(setup: Setup, result: Result, state: WorkingState) -> dict[str, Any]:
         "corrected_shear_MPa": stresses[1],
         "shear_inside_MPa": inside,
         "shear_inside_turn": turn,
-        "shear_surface_MPa": peak.value,
-        "shear_surface_turn": peak.turn,
-        "shear_surface_angle_deg": peak.angle,
+        **peak_entries("shear_surface", shear_peak(setup, shot)),
         "allowed_MPa": setup.limits.shear,
         "allowed_of": setup.limits.shear_of if setup.limits.shear else "",
         "safety": _safety(setup, *stresses),

@@ -8,164 +8,147 @@ from coilset.model.base.warning import Warning
 from coilset.model.results.records.record import RunErrors
 
 
-def entry(unit: str, text: str, of_slice: bool = True) -> Any:
+def entry(unit: str, text: str, in_slice: bool = False) -> Any:
     """A field of the summary.
 
     Args:
         unit: its unit; empty for counts, words and lists.
         text: its meaning, in Markdown.
-        of_slice: whether the helical slice, a single section whose axis cannot bend, computes it too. Its stresses at
+        in_slice: whether the helical slice, a single section whose axis cannot bend, computes it too; its stresses at
             the surface are in `loaded` and `released`.
     """
-    return field(metadata={"unit": unit, "text": text, "of_slice": of_slice})
+    return field(metadata={"unit": unit, "text": text, "in_slice": in_slice})
 
 
 @dataclass(frozen=True)
 class Summary:
     """The main numbers of a run, in the order of summary.json; unknown entries (no release, no block) are None."""
 
-    complete: bool = entry("", "whether the run went through its whole load program")
-    free_length_before_mm: float = entry("mm", "outer length of the unloaded spring")
+    complete: bool = entry("", "whether the run went through its whole load program", in_slice=True)
+    free_length_before_mm: float = entry("mm", "outer length of the unloaded spring", in_slice=True)
     free_length_after_mm: float | None = entry(
-        "mm", "outer length after the last release to zero force; `null` if there was none"
+        "mm", "outer length after the last release to zero force; `null` if there was none", in_slice=True
     )
-    set_mm: float | None = entry("mm", "their difference")
+    set_mm: float | None = entry("mm", "their difference", in_slice=True)
     releases: tuple[dict[str, Any], ...] = entry(
-        "",
-        "after each release to zero force: its `phase` (from 1 on) and `step`, `free_length_mm` and `set_mm`",
-        of_slice=False,
+        "", "after each release to zero force: its `phase` (from 1 on) and `step`, `free_length_mm` and `set_mm`"
     )
-    rate_N_per_mm: float | None = entry("N/mm", "initial rate, of the unloaded spring between its ends")
+    rate_N_per_mm: float | None = entry("N/mm", "initial rate, of the unloaded spring between its ends", in_slice=True)
     rate_30_70_N_per_mm: float | None = entry(
         "N/mm",
         "of the first compression, force over travel between 30 and 70 % of the travel to block, as manufacturers "
         "measure it; `null` if the travel did not reach that far",
-        of_slice=False,
     )
     rate_30_70_after_N_per_mm: float | None = entry(
         "N/mm",
         "the same of the finished spring: for the compression after the last release if it reaches so far, else for "
         "the release itself; "
         "travel counts from the free length after it",
-        of_slice=False,
     )
     rates: tuple[dict[str, Any], ...] = entry(
         "",
         "at the travels of the case's `rates_at`: `travel_mm`, `force_N`, and `rate_N_per_mm`, the slope of the "
         "first compression there by a parabola through three steps",
-        of_slice=False,
     )
-    force_max_N: float = entry("N", "the force of largest magnitude in any step")
-    block_height_mm: float = entry("mm", "height at which each coil touches the next, by geometry")
+    force_max_N: float = entry("N", "the force of largest magnitude in any step", in_slice=True)
+    block_height_mm: float = entry("mm", "height at which each coil touches the next, by geometry", in_slice=True)
     residual_shear_max_MPa: float | None = entry(
         "MPa",
         "maximum shear stress on the wire's surface after release, in the middle turns: a turn from the tips, or "
         "from the end coils of closed ends",
+        in_slice=True,
     )
-    residual_shear_max_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
-    residual_shear_max_angle_deg: float | None = entry(
-        "degrees", "at which angle from the inside of the coil", of_slice=False
-    )
-    shear_max_MPa: float = entry("MPa", "the same at any of the snapshots")
+    residual_shear_max_turn: float | None = entry("turns", "at which turn from the bottom tip")
+    residual_shear_max_angle_deg: float | None = entry("degrees", "at which angle from the inside of the coil")
+    shear_max_MPa: float = entry("MPa", "the same at any of the snapshots", in_slice=True)
     residual_shear_ends_max_MPa: float | None = entry(
-        "MPa",
-        "maximum shear stress on the surface of the ends, outside the middle turns, after release",
-        of_slice=False,
+        "MPa", "maximum shear stress on the surface of the ends, outside the middle turns, after release"
     )
-    residual_shear_ends_max_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
-    residual_shear_ends_max_angle_deg: float | None = entry(
-        "degrees", "at which angle from the inside of the coil", of_slice=False
-    )
+    residual_shear_ends_max_turn: float | None = entry("turns", "at which turn from the bottom tip")
+    residual_shear_ends_max_angle_deg: float | None = entry("degrees", "at which angle from the inside of the coil")
     residual_shear_inside_MPa: float | None = entry(
         "MPa",
         "shear stress on the surface at the inside of the coil after release, in the middle turns; positive as in "
         "a compressed spring",
+        in_slice=True,
     )
-    residual_shear_inside_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
-    shear_inside_max_MPa: float = entry("MPa", "shear stress of largest magnitude at the inside over the snapshots")
+    residual_shear_inside_turn: float | None = entry("turns", "at which turn from the bottom tip")
+    shear_inside_max_MPa: float = entry(
+        "MPa", "shear stress of largest magnitude at the inside over the snapshots", in_slice=True
+    )
     residual_shear_surface_max_MPa: float | None = entry(
-        "MPa", "maximum shear stress on the whole surface of the wire after release", of_slice=False
+        "MPa", "maximum shear stress on the whole surface of the wire after release"
     )
-    residual_shear_surface_max_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
-    residual_shear_surface_max_angle_deg: float | None = entry(
-        "degrees", "at which angle from the inside of the coil", of_slice=False
-    )
-    residual_equivalent_surface_max_MPa: float | None = entry("MPa", "maximum von Mises stress there", of_slice=False)
-    residual_equivalent_surface_max_turn: float | None = entry("turns", "its turn", of_slice=False)
-    residual_equivalent_surface_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
-    shear_surface_max_MPa: float | None = entry(
-        "MPa", "maximum shear stress on the surface at any of the snapshots", of_slice=False
-    )
-    shear_surface_max_turn: float | None = entry("turns", "its turn", of_slice=False)
-    shear_surface_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
+    residual_shear_surface_max_turn: float | None = entry("turns", "at which turn from the bottom tip")
+    residual_shear_surface_max_angle_deg: float | None = entry("degrees", "at which angle from the inside of the coil")
+    residual_equivalent_surface_max_MPa: float | None = entry("MPa", "maximum von Mises stress there")
+    residual_equivalent_surface_max_turn: float | None = entry("turns", "its turn")
+    residual_equivalent_surface_max_angle_deg: float | None = entry("degrees", "its angle")
+    shear_surface_max_MPa: float | None = entry("MPa", "maximum shear stress on the surface at any of the snapshots")
+    shear_surface_max_turn: float | None = entry("turns", "its turn")
+    shear_surface_max_angle_deg: float | None = entry("degrees", "its angle")
     equivalent_surface_max_MPa: float | None = entry(
-        "MPa", "maximum von Mises stress on the surface at any of the snapshots", of_slice=False
+        "MPa", "maximum von Mises stress on the surface at any of the snapshots"
     )
-    equivalent_surface_max_turn: float | None = entry("turns", "its turn", of_slice=False)
-    equivalent_surface_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
+    equivalent_surface_max_turn: float | None = entry("turns", "its turn")
+    equivalent_surface_max_angle_deg: float | None = entry("degrees", "its angle")
     residual_bending_inside_MPa: float | None = entry(
         "MPa",
         "stress along the wire on the surface at the inside of the coil after release, in the middle turns, where its "
         "magnitude is largest; positive in tension",
-        of_slice=False,
     )
-    residual_bending_outside_MPa: float | None = entry("MPa", "the same at the outside of the coil", of_slice=False)
-    max_bending_inside_MPa: float | None = entry("MPa", "that at the inside in any snapshot", of_slice=False)
-    max_bending_outside_MPa: float | None = entry("MPa", "that at the outside in any snapshot", of_slice=False)
+    residual_bending_outside_MPa: float | None = entry("MPa", "the same at the outside of the coil")
+    max_bending_inside_MPa: float | None = entry("MPa", "that at the inside in any snapshot")
+    max_bending_outside_MPa: float | None = entry("MPa", "that at the outside in any snapshot")
     tail_stress_max_MPa: float | None = entry(
         "MPa",
         "stress along the wire of largest magnitude on the surface of hooks or arms in any snapshot; positive in "
         "tension; `null`, as the next two, without these",
-        of_slice=False,
     )
     tail_stress_max_turn: float | None = entry(
-        "turns", "its turn: below 0 at the bottom, above the coil's last turn at the top", of_slice=False
+        "turns", "its turn: below 0 at the bottom, above the coil's last turn at the top"
     )
-    residual_tail_stress_MPa: float | None = entry("MPa", "that which stays there after release", of_slice=False)
+    residual_tail_stress_MPa: float | None = entry("MPa", "that which stays there after release")
     inner_diameter_min_mm: float = entry(
-        "mm", "diameter of the largest arbor that the coils leave room for in all snapshots", of_slice=False
+        "mm", "diameter of the largest arbor that the coils leave room for in all snapshots"
     )
     turn_max_deg: float | None = entry(
         "degrees",
         "largest rotation of the top head against the bottom one; `null`, as the next four, unless a torque loads the "
         "spring",
-        of_slice=False,
     )
-    torque_max_Nmm: float | None = entry("N mm", "largest torque about the spring's axis", of_slice=False)
-    turn_rate_Nmm_per_deg: float | None = entry("N mm/°", "torque over rotation in the first step", of_slice=False)
+    torque_max_Nmm: float | None = entry("N mm", "largest torque about the spring's axis")
+    turn_rate_Nmm_per_deg: float | None = entry("N mm/°", "torque over rotation in the first step")
     turn_rate_after_Nmm_per_deg: float | None = entry(
-        "N mm/°", "torque over the rotation that the last release gives back", of_slice=False
+        "N mm/°", "torque over the rotation that the last release gives back"
     )
-    turn_set_deg: float | None = entry("degrees", "rotation that remains after the last release", of_slice=False)
+    turn_set_deg: float | None = entry("degrees", "rotation that remains after the last release")
     initial_tension_N: float | None = entry(
         "N",
         "F0 of coils that are wound onto each other: the line of the open spring in the first pull, at its closed "
         "length; `null`, as the next two, without `spring.initial_tension`",
-        of_slice=False,
     )
-    initial_tension_after_N: float | None = entry(
-        "N", "F0 by the line of the last release; 0 if the coils stay open", of_slice=False
+    initial_tension_after_N: float | None = entry("N", "F0 by the line of the last release; 0 if the coils stay open")
+    open_rate_N_per_mm: float | None = entry("N/mm", "rate once the coils are open, in the first pull")
+    plastic_work_max_N_per_mm2: float = entry("N/mm²", "maximum plastic work b* on the surface", in_slice=True)
+    plastic_work_max_turn: float | None = entry("turns", "its turn")
+    plastic_work_max_angle_deg: float | None = entry("degrees", "its angle")
+    plastic_work_known_to_N_per_mm2: float = entry(
+        "N/mm²", "limit up to which the constants of the material are valid", in_slice=True
     )
-    open_rate_N_per_mm: float | None = entry("N/mm", "rate once the coils are open, in the first pull", of_slice=False)
-    plastic_work_max_N_per_mm2: float = entry("N/mm²", "maximum plastic work b* on the surface")
-    plastic_work_max_turn: float | None = entry("turns", "its turn", of_slice=False)
-    plastic_work_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
-    plastic_work_known_to_N_per_mm2: float = entry("N/mm²", "limit up to which the constants of the material are valid")
     estimated_force_error_N: float | None = entry(
         "N",
         "estimated size of the error of the maximum force by steps, mesh, section rule, contact and warping together; "
         "`null` where one of them is not known, and with `accuracy: none`",
-        of_slice=False,
     )
-    estimated_set_error_mm: float | None = entry("mm", "the same of the set", of_slice=False)
+    estimated_set_error_mm: float | None = entry("mm", "the same of the set")
     estimated_residual_shear_inside_error_MPa: float | None = entry(
-        "MPa", "the same of the residual shear stress at the inside of the coil", of_slice=False
+        "MPa", "the same of the residual shear stress at the inside of the coil"
     )
     estimated_errors: RunErrors | None = entry(  # noqa: RUF009 - it is frozen
         "",
         "the parts of these by their causes `steps`, `mesh`, `section`, `contact` and `warping`: each has `force_N`, "
         "`set_mm` and `residual_shear_inside_MPa`; `null` where not estimated",
-        of_slice=False,
     )
     working: tuple[dict[str, Any], ...] = entry(
         "",
@@ -173,10 +156,9 @@ class Summary:
         "`estimated_error`, the nominal `shear_MPa` and `corrected_shear_MPa` of EN 13906-1, the true maximum "
         "`shear_inside_MPa` and `shear_surface_MPa` of the middle turns with their places, `allowed_MPa` and `safety` "
         "for a wire of a standard, force centres; or the `reason` why the spring cannot be there",
-        of_slice=False,
     )
     working_set_mm: float | None = entry(
-        "mm", "further set by going to the working lengths once; 0 of a spring that stays elastic", of_slice=False
+        "mm", "further set by going to the working lengths once; 0 of a spring that stays elastic"
     )
     fatigue: tuple[dict[str, Any], ...] = entry(
         "",
@@ -184,54 +166,50 @@ class Summary:
         "greatest fully reversed `amplitude_MPa` on the wire's surface that damages as much, its `turn` and "
         "`angle_deg` from the inside of the coil, the `endured_MPa`, their ratio `safety`, and `lives`, cycles "
         "that 10, 50 and 90 % do not survive, `null` where it endures",
-        of_slice=False,
     )
     limits: tuple[dict[str, Any], ...] = entry(
         "",
         "for each of the case's `limits`: `name` of the result, its `value`, `low`, `high`, their `source`, whether "
         "they are `met`, and the `margin` to the nearer one, negative outside",
-        of_slice=False,
     )
     load_loss_percent: float | None = entry(
         "%",
         "part of its force that the spring had lost when time last passed at constant height; `null` if none did",
+        in_slice=True,
     )
     coiling_diameter_mm: float | None = entry(
         "mm",
         "mean diameter to which the wire was coiled at mid-wire, before it sprang back to the drawing; `null` "
         "without `spring.made_by: coiling`",
-        of_slice=False,
     )
     measured_axis_offset_mm: float | None = entry(
         "mm",
         "distance of a measured spring's fitted axis from the z axis of its file, at half height; `null` for a drawn "
         "spring",
-        of_slice=False,
     )
-    measured_axis_tilt_deg: float | None = entry("degrees", "angle between the two", of_slice=False)
-    steps: int = entry("", "converged steps")
-    iterations: int = entry("", "iterations of the solves that found them")
-    evaluations: int = entry("", "states evaluated, including those of line searches and failed solves", of_slice=False)
-    failed_solves: int = entry("", "solves without an equilibrium, which were followed by others", of_slice=False)
-    material: str = entry("", "name of the law")
-    ends: str = entry("", "`seats` or `clamped`")
-    unstable_steps: int = entry("", "steps that ended in an unstable state", of_slice=False)
-    buckled: bool = entry("", "whether the spring left its axis", of_slice=False)
-    buckling_travel_mm: float | None = entry("mm", "travel at which it did", of_slice=False)
-    buckling_force_N: float | None = entry("N", "force at which it did", of_slice=False)
+    measured_axis_tilt_deg: float | None = entry("degrees", "angle between the two")
+    steps: int = entry("", "converged steps", in_slice=True)
+    iterations: int = entry("", "iterations of the solves that found them", in_slice=True)
+    evaluations: int = entry("", "states evaluated, including those of line searches and failed solves")
+    failed_solves: int = entry("", "solves without an equilibrium, which were followed by others")
+    material: str = entry("", "name of the law", in_slice=True)
+    ends: str = entry("", "`seats` or `clamped`", in_slice=True)
+    unstable_steps: int = entry("", "steps that ended in an unstable state")
+    buckled: bool = entry("", "whether the spring left its axis")
+    buckling_travel_mm: float | None = entry("mm", "travel at which it did")
+    buckling_force_N: float | None = entry("N", "force at which it did")
     buckling_travel_EN_13906_1_mm: float | None = entry(
-        "mm", "travel at which it should by EN 13906-1; `null` if never", of_slice=False
+        "mm", "travel at which it should by EN 13906-1; `null` if never"
     )
-    elements: int = entry("", "rods along the wire")
-    section_kind: str = entry("", "`plane`, `curved` or `warping`", of_slice=False)
-    section_rule: str = entry("", "quadrature of the section")
-    lift_off_max_mm: float = entry(
-        "mm", "maximum distance between the wire and a seat it has lifted off", of_slice=False
-    )
+    elements: int = entry("", "rods along the wire", in_slice=True)
+    section_kind: str = entry("", "`plane`, `curved` or `warping`")
+    section_rule: str = entry("", "quadrature of the section", in_slice=True)
+    lift_off_max_mm: float = entry("mm", "maximum distance between the wire and a seat it has lifted off")
     warnings: tuple[Warning, ...] = entry(
         "",
         "a list: each has a `name`, the `place` that it is about, a `message`, and `value`, `limit` and `unit` "
         "where there are numbers",
+        in_slice=True,
     )
 
 
@@ -241,5 +219,5 @@ def _is_number(kind: Any) -> bool:
 
 
 NUMBERS = tuple(item.name for item in fields(Summary) if _is_number(item.type))
-UNSEEN = tuple(item.name for item in fields(Summary) if not item.metadata["of_slice"])
+UNSEEN = tuple(item.name for item in fields(Summary) if not item.metadata["in_slice"])
 """Entries that a slice does not compute."""

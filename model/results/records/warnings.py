@@ -31,12 +31,7 @@ Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
 def run_warnings(setup: Setup, result: Result) -> list[Warning]:
-    """All warnings of a run: about its case, its steps, and its results.
-
-    Args:
-        setup: Setup.
-        result: Result, complete or not; its snapshots are whole on rank 0 only.
-    """
+    """All warnings of a run, complete or not, on rank 0: about its case, its steps, and its results."""
     found = [warning for check in FOUND for warning in check(setup, result)]
     return [*setup.warnings, *result.warnings, *step_warnings(setup, result), *found]
 
@@ -272,10 +267,6 @@ def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     """Errors by the requested accuracy of the numbers that it governs, by their names in Errors: of a set, at least
     one that is noticed; of the residual stress inside, STRESS times the accuracy of the largest stress there. None in
     torsion, whose errors of torque and rotation are not estimated.
-
-    Args:
-        setup: Setup of a run that estimates errors.
-        result: Result with steps.
     """
     if is_turned(setup, result.steps):
         return {}
