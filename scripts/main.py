@@ -100,7 +100,8 @@ def solve(
     """Take a spring through its load program and write the results."""
     from coilset.scripts.terminal.drawing import Drawings
 
-    if quiet + json + verbose > 1:
+    given = [name for name, wanted in (("quiet", quiet), ("json", json), ("verbose", verbose)) if wanted]
+    if len(given) > 1:
         raise InputError("are three ways to print a run; give one of them", "--quiet, --json, --verbose")
     if not (quiet or json):
         announce_begin(case, out)
@@ -113,18 +114,15 @@ def solve(
         load_for_solve()
         from coilset.scripts.commands.solve import solve as run_case
 
-        voice = "quiet" if quiet else "json" if json else "lines"
         run_case(
             case,
             out,
             force,
             settings,
-            pictures,
-            resume,
-            interactive,
-            drawings=drawings,
-            voice=voice,
-            verbose=verbose,
+            drawings=drawings if pictures else None,
+            resume=resume,
+            interactive=interactive,
+            voice=given[0] if given else "lines",
             threads=threads,
         )
 
@@ -234,21 +232,10 @@ def sheet(
     if wires:
         sheets.list_wires(wire)
     else:
-        sheets.sheet(
-            case,
-            results,
-            wire,
-            length,
-            grade,
-            surface,
-            dynamic,
-            out,
-            language.value,
-            force,
-            settings,
-            pictures,
-            height,
+        options = sheets.Options(
+            results, wire, length, grade, surface, dynamic, out, language.value, force, settings, pictures, height
         )
+        sheets.sheet(case, options)
 
 
 @app.command()

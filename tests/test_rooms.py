@@ -73,8 +73,6 @@ PARAMETERS = {
     "model/section/integration.py": 1,
     "model/section/warping.py": 2,
     "model/uniform_coil/rod.py": 1,
-    "scripts/commands/sheet.py": 1,
-    "scripts/commands/solve.py": 1,
 }
 CTYPES = {"model/equilibrium/system/aij.py", "model/runtime/processes.py"}
 

@@ -15,12 +15,7 @@ BORNE = 2.0  # times the elastic force at which all coils are in contact: a targ
 
 
 def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
-    """Refuse targets that no spring can reach.
-
-    Args:
-        case: Case.
-        spring: its spring.
-        shear_modulus: G of its material, MPa.
+    """Refuse targets that no spring can reach, with G of its material in MPa.
 
     Raises:
         InputError: with the numbers: seats that would have to pull, hooks that would press, a height below block, or a

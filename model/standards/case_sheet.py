@@ -29,8 +29,7 @@ def case_sheet(
     """The sheet of a case.
 
     Args:
-        case: Case.
-        spring: its geometry.
+        case, spring: the spring is built from the case.
         run: results of a run of it, if there is one.
         wire_name: standard wire; None takes the case's, if it names one.
         lengths: working lengths, mm; if empty, those of the case, or else those that the load program goes to.
@@ -51,24 +50,25 @@ def case_sheet(
                 f"free length {cylinder.length:.4g} mm",
                 "--length",
             )
+    E, G, turns_to = elastic.young_modulus, elastic.shear_modulus, rotations(case, spring)
     made = Sheet(
         cylinder,
         elastic,
-        spring.wire_length,
-        known,
-        tuple(lengths),
-        grade,
-        surface,
-        dynamic,
-        run,
-        not case.ends_turn,
-        law.first_yield(case.temperature),
-        law.data.tensile_strength if isinstance(case.material, str) else None,
-        pulls(case, spring),
-        rotations(case, spring),
-        getattr(case.spring, "initial_tension", None) or 0.0,
-        tails_compliance(spring, elastic.young_modulus, elastic.shear_modulus, bool(rotations(case, spring))),
-        OnPoint.of(spring, elastic.young_modulus, elastic.shear_modulus),
+        helix=spring.wire_length,
+        wire=known,
+        lengths=tuple(lengths),
+        grade=grade,
+        surface=surface,
+        dynamic=dynamic,
+        found=run,
+        held=not case.ends_turn,
+        yield_stress=law.first_yield(case.temperature),
+        strength=law.data.tensile_strength if isinstance(case.material, str) else None,
+        pulled=pulls(case, spring),
+        turns_to=turns_to,
+        tension=getattr(case.spring, "initial_tension", None) or 0.0,
+        beyond=tails_compliance(spring, E, G, bool(turns_to)),
+        on_point=OnPoint.of(spring, E, G),
     )
     if lengths:
         return made

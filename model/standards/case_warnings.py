@@ -22,13 +22,7 @@ from coilset.model.standards.working import endurance_warnings, gap_warnings, st
 
 
 def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
-    """Warnings about a case, before it runs.
-
-    Args:
-        case: Case.
-        spring: its spring.
-        law: its material.
-    """
+    """Warnings about a case, before it runs."""
     elastic = case_elastic(case, law)
     own = [one for one in spring_warnings(spring, elastic) if not (one.name == "buckling" and pulls(case, spring))]
     return (
@@ -144,12 +138,8 @@ def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
 
 
 def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:
-    """Warnings about the working lengths of a sheet.
-
-    Args:
-        made: Sheet.
-        to_block: the block length, mm, if the spring is compressed to it; checked for stress only.
-    """
+    """Warnings about the working lengths of a sheet; `to_block` has the block length, mm, if the spring is compressed
+    to it, which is checked for stress only."""
     if made.pulled:
         return []
     found = gap_warnings(made)

@@ -9,6 +9,7 @@ import numpy as np
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.standards import en13906
+from coilset.model.standards.buckling import critical_travel
 from coilset.model.standards.rate import WireNumbers
 
 CylinderEnds = Literal["open", "closed", "closed and ground", "mixed"]
@@ -120,7 +121,7 @@ class Cylinder:
     def buckling_travel(self, modulus_ratio: float) -> float:
         """Travel at which it buckles between parallel seats, mm, with G/E; infinite if it never does."""
         bending, shear = self.wire.buckling_ratios(modulus_ratio) if self.wire else (modulus_ratio, None)
-        return en13906.critical_travel(self.length, self.D, bending, shear=shear)
+        return critical_travel(self.length, self.D, bending, shear=shear)
 
     @property
     def pitch_angle(self) -> float:

@@ -8,26 +8,6 @@ L0 free and Lc block length. N, mm, MPa, kg; frequency in Hz.
 
 from math import degrees, pi, sqrt
 
-from coilset.model.standards.buckling import critical_travel
-
-__all__ = [
-    "bending_correction",
-    "bending_stress",
-    "block_length",
-    "critical_travel",
-    "energy",
-    "gap_sum",
-    "mass",
-    "natural_frequency",
-    "outer_diameter_growth",
-    "rate",
-    "stress",
-    "stress_correction",
-    "turn_rate",
-    "turned_diameter",
-    "wire_length",
-]
-
 HOT_COILED = 20.0  # mm; wire above it is coiled hot: EN 15800 ends at 20 mm with its annex A
 DYNAMIC_GAPS = 1.5  # EN 13906-1: Sa of cold coiled springs under alternating load over that under static load
 

@@ -97,11 +97,7 @@ def torsion_rate(spring: Spring, shear_modulus: float) -> float:
 
     Castigliano's `1/R = 64/G ∫ r³/d⁴ dt` over the active turns: R = G d⁴/(8 D³ n) of EN 13906-1 for a cylinder, and
     R = G d⁴/(2 n (D1 + D2)(D1² + D2²)) for a cone (Wahl, Mechanical Springs, chapter on conical springs). Of wire that
-    is not round π d⁴/32 is its torsion constant.
-
-    Args:
-        spring: `Spring`.
-        shear_modulus: G, MPa.
+    is not round π d⁴/32 is its torsion constant. G is in MPa.
     """
     start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
     breaks = np.concatenate([[start], spring.breaks[(spring.breaks > start) & (spring.breaks < end)], [end]])
@@ -116,12 +112,7 @@ def tails_compliance(spring: Spring, young_modulus: float, shear_modulus: float,
     """Compliance of hooks and arms: mm/N along the axis at their held points, or rad/(N mm) about it.
 
     Castigliano's energy with the moment m = (x_h − x) × e of a pull e along the axis at the held point x_h, or m = e of
-    a torque.
-
-    Args:
-        spring: `Spring`.
-        young_modulus, shear_modulus: E and G, MPa.
-        turned: whether a torque turns the spring, instead of a pull.
+    a torque, where the spring is `turned`; E and G are in MPa.
     """
     if not spring.has_tails:
         return 0.0

@@ -18,12 +18,7 @@ OFFSET_USUAL, TILT_USUAL = 0.1, 0.5  # of the wire diameter, and degrees: beyond
 
 
 def spring_warnings(spring: Spring, elastic: Elastic = STEEL) -> list[Warning]:
-    """All warnings about the unloaded spring itself.
-
-    Args:
-        spring: `Spring`.
-        elastic: its material's constants, on whose G/E the travel to buckling depends.
-    """
+    """All warnings about the unloaded spring itself; the travel to buckling depends on its material's G/E."""
     checks = (_wire, _index, _solid_coils, _active, _ground, _axis)
     return [*(warning for check in checks for warning in check(spring)), *_buckling(spring, elastic)]
 

@@ -48,7 +48,7 @@ def mesh(
         elastic = case_elastic(case, case_law(case, spring))
         spring = spring if height is None else spring.at_height(height)
     refuse_to_replace([folder / name for name in DRAWN if pictures] + [Path(path) for path in write], force)
-    rows = ((label, f"{value} {unit}".strip()) for label, value, unit in spring_data(spring, elastic).rows())
+    rows = ((label, f"{value} {unit}".strip()) for label, value, unit in spring_data(spring, elastic))
     console.pairs([*rows, ("elements", str(len(turns) - 1))])
     for warning in spring_warnings(spring, elastic):
         console.warn(warning.message)

@@ -45,7 +45,7 @@ def _solve_found(folder: Path) -> None:
             return
     Console().say(f"solving {folder / 'found.yaml'} for its characteristic")
     with contextlib.suppress(SolveError):  # the page shows it
-        solve(folder / "found.yaml", folder / design_page.FOUND, True, [], False, comm=MPI.COMM_SELF, voice="quiet")
+        solve(folder / "found.yaml", folder / design_page.FOUND, True, [], comm=MPI.COMM_SELF, voice="quiet")
 
 
 def _check(folder: Path) -> None:

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import get_args
 
@@ -35,21 +35,40 @@ FIGURE = "goodman.png"
 GRADES: dict[int, Grade] = {grade: grade for grade in get_args(Grade)}
 
 
-def sheet(
-    case_file: str | Path | None,
-    results: str | Path | None = None,
-    wire_name: str | None = None,
-    lengths: Sequence[float] = (),
-    grade: int = 2,
-    surface: str = "as coiled",
-    dynamic: bool = False,
-    out: str | Path | Sequence[str] | None = None,
-    language: Language = "en",
-    force: bool = False,
-    settings: Sequence[str] = (),
-    pictures: bool = True,
-    height: float | None = None,
-) -> None:
+@dataclass(frozen=True)
+class Options:
+    """What is printed and written; see `coilset sheet --help`."""
+
+    results: str | Path | None = None
+    wire: str | None = None
+    lengths: Sequence[float] = ()
+    grade: int = 2
+    surface: str = "as coiled"
+    dynamic: bool = False
+    out: Sequence[str | Path] = ()
+    language: Language = "en"
+    force: bool = False
+    settings: Sequence[str] = ()
+    pictures: bool = True
+    height: float | None = None
+
+    @property
+    def files(self) -> list[Path]:
+        """Files of the sheet."""
+        return [Path(one) for one in self.out if Path(one).suffix.lower() in SHEETS]
+
+    def folder(self, name: str) -> Path:
+        """Folder of the Goodman diagram."""
+        folders = [one for one in self.out if Path(one) not in self.files]
+        return results_folder(folders[-1] if folders else None, name)
+
+    @property
+    def draws(self) -> bool:
+        """Whether the diagram is drawn: not if there are files alone."""
+        return self.pictures and (not self.files or len(self.files) < len(self.out))
+
+
+def sheet(case_file: str | Path | None, options: Options) -> None:
     """Print the sheet of a spring, write it to files, or draw its Goodman diagram; see `coilset sheet --help`.
 
     Raises:
@@ -57,25 +76,43 @@ def sheet(
     """
     if MPI.COMM_WORLD.rank:
         return  # too little work to be worth distributing
-    console = Console()
+    surface, files = options.surface, options.files
     if surface not in get_args(Surface):
         raise InputError(f"'{surface}' is no surface; give {' or '.join(get_args(Surface))}", "--surface")
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
-    case = read_case(case_file, settings)
-    targets = [Path(one) for one in ([out] if isinstance(out, str | Path) else out or [])]
-    files = [one for one in targets if one.suffix.lower() in SHEETS]
-    folders = [one for one in targets if one not in files]
-    folder = results_folder(folders[-1] if folders else None, Path(case_file).stem)
-    pictures = pictures and (bool(folders) or not files)
-    run = from_results.read(results) if results else None
+    case = read_case(case_file, options.settings)
+    folder = options.folder(Path(case_file).stem)
+    run = from_results.read(options.results) if options.results else None
     with naming(case_file):
         spring = case.spring.build()
-        made = case_sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
-    body = None if height is None else _pressed(spring, height, files)
-    diagram = _diagram(made) if pictures else None
-    refuse_to_replace([*files, *([folder / FIGURE] if diagram is not None else [])], force)
-    parts = sections(made)
+        grade = GRADES[options.grade]
+        made = case_sheet(case, spring, run, options.wire, options.lengths, grade, surface, options.dynamic)
+    body = None if options.height is None else _pressed(spring, options.height, files)
+    diagram = _diagram(made) if options.draws else None
+    refuse_to_replace([*files, *([folder / FIGURE] if diagram is not None else [])], options.force)
+    console = Console()
+    warnings = _print(console, case, spring, made, options.results)
+    if files:
+        from coilset.model.report.document.content import document
+        from coilset.model.report.document.output import write
+
+        name = Path(options.results).resolve().name if options.results else ""
+        content = document(case, spring, made, name, warnings, Words(options.language))
+        if body is not None:
+            content = replace(content, body=body)
+        for file in files:
+            write(content, file)
+            console.say(f"sheet in {file}")
+    if diagram is not None:
+        make(folder)
+        write_png(folder / FIGURE, [diagram_of(*diagram, run.residual if run else None)])
+        console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
+
+
+def _print(console: Console, case: Case, spring: Spring, made: Sheet, results: str | Path | None) -> list[str]:
+    """The rows, and warnings; returns these."""
+    run, parts = made.found, sections(made)
     width = max(len(row.label) for _, rows in parts for row in rows)
     beside = f"{'run':>9}  " if run else ""
     console.print(f"  {'':{width}} {'formula':>9} {'':5} {beside}[dim]how it is computed; check[/]", soft_wrap=True)
@@ -90,21 +127,7 @@ def sheet(
     warnings = [warning.message for warning in _warnings(spring, made)]
     for message in warnings:
         console.warn(message)
-    if files:
-        from coilset.model.report.document.content import document
-        from coilset.model.report.document.output import write
-
-        name = Path(results).resolve().name if results else ""
-        content = document(case, spring, made, name, warnings, Words(language))
-        if body is not None:
-            content = replace(content, body=body)
-        for file in files:
-            write(content, file)
-            console.say(f"sheet in {file}")
-    if diagram is not None:
-        make(folder)
-        write_png(folder / FIGURE, [diagram_of(*diagram, run.residual if run else None)])
-        console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
+    return warnings
 
 
 def _pressed(spring: Spring, height: float, files: Sequence[Path]) -> Spring:

@@ -39,24 +39,23 @@ def solve(
     out: str | Path | None,
     force: bool,
     settings: Sequence[str],
-    pictures: bool,
+    *,
+    drawings: Drawings | None = None,
     resume: bool = False,
     interactive: bool = False,
-    comm: MPI.Comm = MPI.COMM_WORLD,
-    drawings: Drawings | None = None,
     voice: str = "lines",
-    verbose: bool = False,
     threads: int | None = None,
+    comm: MPI.Comm = MPI.COMM_WORLD,
 ) -> None:
-    """Run one case; see `coilset solve --help`. Drawings draws the pictures, `VOICES` are the ways to print a run.
+    """Run one case; see `coilset solve --help`. Drawings draws the pictures, if any; `voice` is one of VOICES.
 
     Raises:
         InputError, SolveError: after the results so far are written.
     """
-    output = VOICES[voice](comm.rank == 0, verbose)
+    output = VOICES[voice](comm.rank == 0)
     if interactive and comm.size > 1:
         raise InputError("works on one rank only; omit -n", "--interactive")
-    if interactive and voice != "lines":
+    if interactive and voice in ("quiet", "json"):
         raise InputError(f"shows each step, and --{voice} does not; give one of the two", "--interactive")
     case = read_case(case_file, settings)
     folder = results_folder(out, Path(case_file).stem)
@@ -68,7 +67,6 @@ def solve(
             compile_first(stages=("creep",))
         on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
         on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, force, resume))
-        drawings = (drawings or stack.enter_context(Drawings(os.environ))) if pictures else None
         _solve(analysis, _Runs(output, case_file, folder, resume, interactive, interrupt), drawings)
 
 

@@ -31,11 +31,10 @@ class Lines:
 
     Args:
         talks: False on ranks that print nothing.
-        verbose: also print a line for each iteration.
     """
 
-    def __init__(self, talks: bool = True, verbose: bool = False) -> None:
-        self.console, self.verbose = Console(quiet=not talks), verbose
+    def __init__(self, talks: bool = True) -> None:
+        self.console = Console(quiet=not talks)
         self._began, self._from = time.monotonic(), 0.0
 
     def say(self, text: str) -> None:
@@ -82,20 +81,9 @@ class Lines:
         left = spent * (1.0 - done) / max(done - self._from, 1e-9)
         return "" if spent < SOON or left < SOON else f"  [dim]{duration(left)} left[/]"
 
-    @contextlib.contextmanager
-    def iterations(self) -> Iterator[None]:
-        """Context in which each iteration is printed, if requested."""
-        if not self.verbose or self.console.quiet:
-            yield
-            return
-        log, handler = logging.getLogger("coilset.iterations"), _Handler(self.console)
-        log.setLevel(logging.DEBUG)
-        log.addHandler(handler)
-        try:
-            yield
-        finally:
-            log.removeHandler(handler)
-            log.setLevel(logging.NOTSET)
+    def iterations(self) -> contextlib.AbstractContextManager[None]:
+        """Context of the iterations of a run."""
+        return contextlib.nullcontext()
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """Print the results."""
@@ -110,6 +98,25 @@ class Lines:
         self.console.say(f"  results in {out}{os.sep}", whole=True)
         for warning in summary["warnings"]:
             self.warn(warning["message"])
+
+
+class Verbose(Lines):
+    """A line for each iteration, too."""
+
+    @contextlib.contextmanager
+    def iterations(self) -> Iterator[None]:
+        """Context in which each iteration is printed."""
+        if self.console.quiet:
+            yield
+            return
+        log, handler = logging.getLogger("coilset.iterations"), _Handler(self.console)
+        log.setLevel(logging.DEBUG)
+        log.addHandler(handler)
+        try:
+            yield
+        finally:
+            log.removeHandler(handler)
+            log.setLevel(logging.NOTSET)
 
 
 class Quiet(Lines):
@@ -170,7 +177,7 @@ class JsonLines(Lines):
         self._put("end", folder=str(out), summary=dict(summary))
 
 
-VOICES = {"lines": Lines, "quiet": Quiet, "json": JsonLines}
+VOICES = {"lines": Lines, "verbose": Verbose, "quiet": Quiet, "json": JsonLines}
 
 
 def duration(seconds: float) -> str:

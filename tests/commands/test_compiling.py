@@ -146,7 +146,7 @@ print(len(compiled), sorted(used() - compiled))
 
 
 def test_shipped_examples_and_a_page_need_no_kernel_that_is_not_compiled_before(example, tmp_path):
-    solve(example, tmp_path / "run", False, COARSE, pictures=False, comm=MPI.COMM_SELF)
+    solve(example, tmp_path / "run", False, COARSE, comm=MPI.COMM_SELF)
     springs, time = (example.parent / name for name in ("springs", "time"))
     files = [example, springs / "closed_and_ground.yaml", time / "relaxation.yaml"]
     command = [sys.executable, "-c", USED + KERNELS, str(tmp_path / "run"), *files]

@@ -27,7 +27,7 @@ def said(tmp_path, capsys):
     def run(name="spring", out="out", **voice):
         path = tmp_path / f"{name}.yaml"
         path.write_text(CASE)
-        solve(path, tmp_path / out, True, [], pictures=False, comm=MPI.COMM_SELF, **voice)
+        solve(path, tmp_path / out, True, [], comm=MPI.COMM_SELF, **voice)
         return capsys.readouterr().out.splitlines(), tmp_path / out
 
     return run
@@ -35,7 +35,7 @@ def said(tmp_path, capsys):
 
 def test_a_finished_run_that_is_resumed_has_no_table_of_steps(said, tmp_path, capsys):
     said()
-    solve(tmp_path / "spring.yaml", tmp_path / "out", False, [], pictures=False, comm=MPI.COMM_SELF, resume=True)
+    solve(tmp_path / "spring.yaml", tmp_path / "out", False, [], comm=MPI.COMM_SELF, resume=True)
     lines = capsys.readouterr().out.splitlines()
     assert "all 5 steps are there: only the results are written again" in lines
     assert not any("iter." in line for line in lines)
@@ -46,7 +46,7 @@ def test_a_pulled_spring_has_no_rate_on_the_way_to_block(tmp_path, capsys, trave
     path = tmp_path / "spring.yaml"
     path.write_text(CASE)
     program = [f"loading=[{{to: {{travel: {travel}}}, steps: 1}}]", "ends=clamped"]
-    solve(path, tmp_path / "out", True, program, pictures=False, comm=MPI.COMM_SELF)
+    solve(path, tmp_path / "out", True, program, comm=MPI.COMM_SELF)
     assert ("rate at 30 to 70 % of the travel" in capsys.readouterr().out) == told
 
 
@@ -77,7 +77,7 @@ def test_quiet_prints_warnings_alone(said):
 
 def test_verbose_prints_each_iteration(said):
     """As many as the step took and the state it began with, the last one in equilibrium; no colours in a file."""
-    lines, _ = said(verbose=True)
+    lines, _ = said(voice="verbose")
     assert not any("\x1b" in line for line in lines)
     told, steps = [], 0
     for line in lines[1 + next(k for k, one in enumerate(lines) if one.startswith(" step")) :]:

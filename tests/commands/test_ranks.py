@@ -41,7 +41,7 @@ def run(example, out, ranks, phases, resume=False):
     """`coilset solve` on the first `ranks` ranks; all wait for its end."""
     part = COMM.Split(0 if COMM.rank < ranks else 1, COMM.rank)
     if COMM.rank < ranks:
-        solve(example, out, False, [*SETTINGS, f"loading=[{', '.join(phases)}]"], False, resume=resume, comm=part)
+        solve(example, out, False, [*SETTINGS, f"loading=[{', '.join(phases)}]"], resume=resume, comm=part)
     part.Free()
     COMM.barrier()
 

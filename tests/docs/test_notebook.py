@@ -22,7 +22,7 @@ def test_every_cell_runs_and_every_figure_is_drawn(tmp_path, monkeypatch):
     from coilset.scripts.commands.solve import solve
 
     (tmp_path / "spring.yaml").write_text(CASE)
-    solve(tmp_path / "spring.yaml", tmp_path / "run", False, [], pictures=False, comm=MPI.COMM_SELF)
+    solve(tmp_path / "spring.yaml", tmp_path / "run", False, [], comm=MPI.COMM_SELF)
     monkeypatch.setenv("COILSET_RUN", str(tmp_path / "run"))
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     book = nbformat.read(NOTEBOOK, as_version=4)

@@ -63,7 +63,7 @@ def test_automatic_steps_need_the_estimate(example, tmp_path):
     settings = [*SMALL, NONE, "loading=[{to: block, steps: 5}, {to: {force: 0}}]"]
     words = "loading.1.steps: automatic steps follow the error that accuracy: none leaves unknown; give a number"
     with pytest.raises(InputError) as caught:
-        solve(example, tmp_path / "out", False, settings, False)
+        solve(example, tmp_path / "out", False, settings)
     assert str(caught.value).startswith(f"{example}: {words}")
     assert not (tmp_path / "out").exists()
     with pytest.raises(InputError, match=words):

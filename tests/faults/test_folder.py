@@ -56,7 +56,7 @@ def folder(interrupted, tmp_path):
 
 
 def resume(example, folder, *more):
-    solve(example, folder, False, [*SMALL, *more], False, resume=True, comm=COMM)
+    solve(example, folder, False, [*SMALL, *more], resume=True, comm=COMM)
 
 
 def test_an_undamaged_one_goes_on(example, folder):
@@ -67,13 +67,13 @@ def test_an_undamaged_one_goes_on(example, folder):
 @pytest.mark.parametrize("force", [False, True])
 def test_pictures_of_mesh_go_only_where_results_are_replaced(example, tmp_path, force):
     (tmp_path / "drawing.png").write_text("of this spring, or of another")
-    solve(example, tmp_path, force, SMALL, False, comm=COMM)
+    solve(example, tmp_path, force, SMALL, comm=COMM)
     assert (tmp_path / "drawing.png").exists() != force
 
 
 @pytest.mark.parametrize("name", ["history.csv", "seats.csv"])
 def test_an_empty_table_is_one_line(example, tmp_path, name):
-    solve(example, tmp_path, False, SMALL, False, comm=COMM)
+    solve(example, tmp_path, False, SMALL, comm=COMM)
     (tmp_path / name).write_text("")
     with pytest.raises(InputError, match=rf"{name}: is not readable: it is empty"):
         open_run(tmp_path)
@@ -250,7 +250,7 @@ def test_damage_at_every_array_gets_one_line(example, folder):
 def test_a_folder_in_the_way_of_a_file_is_seen_before_the_run(example, tmp_path, name, force):
     (tmp_path / "out" / name).mkdir(parents=True)
     with pytest.raises(InputError, match=f"--out: there is a folder named {name} in it"):
-        solve(example, tmp_path / "out", force, SMALL, False, comm=COMM)
+        solve(example, tmp_path / "out", force, SMALL, comm=COMM)
     assert not [path for path in tmp_path.rglob("*") if path.is_file()]
 
 
@@ -258,7 +258,7 @@ def test_a_folder_in_the_way_of_a_file_is_seen_before_the_run(example, tmp_path,
 def test_a_file_in_the_way_of_a_folder_is_seen_before_the_run(example, tmp_path, name):
     (tmp_path / name).write_text("mine")
     with pytest.raises(InputError, match=f"--out: there is a file named {name} in it"):
-        solve(example, tmp_path, True, SMALL, False, comm=COMM)
+        solve(example, tmp_path, True, SMALL, comm=COMM)
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
@@ -270,20 +270,20 @@ def test_nothing_to_go_on_from_leaves_nothing(example, tmp_path):
 
 def test_resume_and_force_are_not_both(example, folder):
     with pytest.raises(InputError, match="--resume: continues a run, and --overwrite discards it"):
-        solve(example, folder, True, SMALL, False, resume=True, comm=COMM)
+        solve(example, folder, True, SMALL, resume=True, comm=COMM)
     assert (folder / "checkpoint" / STATE).exists()
 
 
 def test_a_folder_may_begin_with_a_tilde(example, tmp_path, monkeypatch):
     """It is not another user's home folder: libraries would look for it."""
     monkeypatch.chdir(tmp_path)
-    solve(example, "~out", False, SMALL, False, comm=COMM)
+    solve(example, "~out", False, SMALL, comm=COMM)
     assert (tmp_path / "~out" / "points.nc").exists()
 
 
 def test_an_interrupted_run_is_not_thrown_away(example, folder):
     with pytest.raises(InputError, match=r"--resume.*--overwrite"):
-        solve(example, folder, False, SMALL, False, comm=COMM)
+        solve(example, folder, False, SMALL, comm=COMM)
     assert (folder / "checkpoint" / STATE).exists()
 
 
@@ -297,7 +297,7 @@ def test_a_forced_run_leaves_nothing_of_the_old_one(example, folder, monkeypatch
 
     monkeypatch.setattr(Analysis, "run", killed)
     with pytest.raises(Stop):
-        solve(example, folder, True, SMALL, False, comm=COMM)
+        solve(example, folder, True, SMALL, comm=COMM)
     assert [path.name for path in folder.rglob("*") if path.is_file()] == ["log.txt"]
     assert (folder / "log.txt").read_text() == ""
 
@@ -305,7 +305,7 @@ def test_a_forced_run_leaves_nothing_of_the_old_one(example, folder, monkeypatch
 def test_one_run_at_a_time_works_in_a_folder(example, folder):
     (folder / "log.txt").write_text("of the other\n")
     with run_log(folder), pytest.raises(InputError, match="another run"):
-        solve(example, folder, True, SMALL, False, comm=COMM)
+        solve(example, folder, True, SMALL, comm=COMM)
     assert (folder / "log.txt").read_text() == "of the other\n"
     resume(example, folder)
 
@@ -344,7 +344,7 @@ FIRST_TOUCH = ["contact.bedding=1e9", "solver.options={pc_type: none}"]
 @pytest.mark.parametrize("setting", FIRST_TOUCH)
 def test_a_failure_at_the_first_touch_ends_as_any_other(example, tmp_path, setting):
     with pytest.raises(SolveError) as caught:
-        solve(example, tmp_path / "out", False, [*SMALL, setting], False, comm=COMM)
+        solve(example, tmp_path / "out", False, [*SMALL, setting], comm=COMM)
     assert "\n" not in str(caught.value)
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert not summary["complete"]
@@ -357,7 +357,7 @@ def test_a_disk_that_fills_during_a_run_gets_one_line(example, tmp_path, monkeyp
 
     monkeypatch.setattr(folders.os, "posix_fallocate", full)
     with pytest.raises(CoilsetError, match=r"points\.nc: cannot be written: No space"):
-        solve(example, tmp_path / "out", False, SMALL, False, comm=COMM)
+        solve(example, tmp_path / "out", False, SMALL, comm=COMM)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
@@ -371,7 +371,7 @@ def test_a_signal_at_the_first_touch_ends_gently(example, tmp_path, monkeypatch,
 
     monkeypatch.setattr(Analysis, "initial_rate", signalled)
     with pytest.raises(KeyboardInterrupt):
-        solve(example, tmp_path / "out", False, SMALL, False, comm=COMM)
+        solve(example, tmp_path / "out", False, SMALL, comm=COMM)
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert not summary["complete"]
     assert summary["steps"] == 0

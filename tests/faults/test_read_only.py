@@ -63,7 +63,7 @@ def run(lines, folder):
 def test_no_command_works_for_a_folder_that_cannot_be_written_to(example, tmp_path):
     case = str(example)
     results, closed = tmp_path / "results", tmp_path / "closed"
-    solve(example, results, False, SMALL, False)
+    solve(example, results, False, SMALL)
     (tmp_path / "design.yaml").write_text(
         f"case: {case}\nfind: {{loading.0.to.height: [18, 34]}}\nsuch_that: {{set_mm: 1}}\nchange: {{}}\n"
     )

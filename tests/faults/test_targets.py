@@ -16,7 +16,7 @@ PULLS = [("force", -1000, "-1000 N"), ("travel", -2, "-2 mm"), ("height", 40, "4
 def test_seats_do_not_pull(example, tmp_path, entry, value, words):
     loading = f"loading=[{{to: {{travel: 2}}}}, {{to: {{{entry}: {value}}}}}]"
     with pytest.raises(InputError, match=words) as caught:
-        solve(example, tmp_path / "out", False, [loading], False)
+        solve(example, tmp_path / "out", False, [loading])
     assert f"loading.1.to.{entry}" in str(caught.value)
     assert not (tmp_path / "out").exists()
     clamped = read_case(example, [loading, "ends=clamped"])
@@ -46,7 +46,7 @@ BEYOND = [
 def test_nothing_is_pressed_beyond_its_block(example, tmp_path, target, words, ends):
     settings = [f"loading=[{{to: block}}, {{to: {{{target}}}}}]", f"ends={ends}"]
     with pytest.raises(InputError) as caught:
-        solve(example, tmp_path / "out", False, settings, False)
+        solve(example, tmp_path / "out", False, settings)
     assert f"loading.1.to.{words}" in str(caught.value)
     assert not (tmp_path / "out").exists()
 

@@ -79,7 +79,7 @@ def test_numbers_of_a_round_ellipse_are_those_of_round_wire():
 
 def test_data_name_the_formula_of_the_rate():
     """That of round wire stands for no rectangle."""
-    names = [label for label, *_ in spring_data(case(RECTANGLE).spring.build()).rows()]
+    names = [label for label, *_ in spring_data(case(RECTANGLE).spring.build())]
     assert "rate 4 G J/(π D³ n)" in names
 
 

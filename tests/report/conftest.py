@@ -23,5 +23,5 @@ def folder(tmp_path_factory):
     """Results of six steps, to block and back."""
     place = tmp_path_factory.mktemp("run")
     (place / "spring.yaml").write_text(CASE)
-    solve(place / "spring.yaml", place / "spring", False, [], pictures=False, comm=MPI.COMM_SELF)
+    solve(place / "spring.yaml", place / "spring", False, [], comm=MPI.COMM_SELF)
     return place / "spring"

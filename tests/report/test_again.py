@@ -18,7 +18,7 @@ def test_the_material_stands_beside_the_case(example, tmp_path):
     steel = tmp_path / "author" / "steel.yaml"
     steel.parent.mkdir()
     steel.write_bytes((library.FOLDER / "ck15.yaml").read_bytes())
-    solve(example, tmp_path / "run", False, [*SHORT, f"material={steel}"], False, comm=MPI.COMM_SELF)
+    solve(example, tmp_path / "run", False, [*SHORT, f"material={steel}"], comm=MPI.COMM_SELF)
     case, files = complete(open_run(tmp_path / "run"))
     assert str(tmp_path) not in yaml.safe_dump(case) + "".join(files.values())
     (tmp_path / "again.yaml").write_text(yaml.safe_dump(case))

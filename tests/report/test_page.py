@@ -24,7 +24,7 @@ from coilset.model.report.page import CHAPTERS, write_report
 from coilset.model.report.render import GLOSSARY
 from coilset.model.results.files.opened import open_run
 from coilset.scripts.commands.report import report
-from coilset.scripts.commands.sheet import sheet
+from coilset.scripts.commands.sheet import Options, sheet
 
 MOST = 15e6  # bytes of a page
 
@@ -115,7 +115,7 @@ def test_words_of_the_glossary_are_explained(page):
 
 def test_the_makers_sheet_is_that_of_the_command(folder, page, capsys):
     """Each value and what the run found, as `coilset sheet` prints them."""
-    sheet(folder.parent / "spring.yaml", folder, pictures=False)
+    sheet(folder.parent / "spring.yaml", Options(folder, pictures=False))
     printed = capsys.readouterr().out.splitlines()
     rows = re.findall(r'<th scope="row">([^<]*)</th><td>([^<]*)</td><td>([^<]*)</td>', page)
     assert len(rows) > 20

@@ -24,7 +24,7 @@ def test_springs_of_any_slenderness_fit_into_the_view(tall):
 
 def test_the_torque_of_the_title_is_shown_first(example, tmp_path):
     """The title named the state of the greatest torque while the last one, without torque, was shown."""
-    solve(example, tmp_path / "run", False, PRESSED, False, comm=MPI.COMM_SELF)
+    solve(example, tmp_path / "run", False, PRESSED, comm=MPI.COMM_SELF)
     panel = moments_along_wire(open_run(tmp_path / "run"))
     first = len(panel.choices) - 1  # the last choice is shown first
     shown = [trace for trace in panel.traces if trace["meta"]["choice"] == first and trace["name"] == "torque Mt"]

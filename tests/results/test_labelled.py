@@ -21,7 +21,7 @@ mesh: {elements_per_turn: 6, section: {radial: 2, angular: 4}}
 
 def test_a_run_comes_with_its_numbers_and_units(tmp_path):
     (tmp_path / "spring.yaml").write_text(CASE)
-    solve(tmp_path / "spring.yaml", tmp_path / "out", False, [], pictures=False, comm=MPI.COMM_SELF)
+    solve(tmp_path / "spring.yaml", tmp_path / "out", False, [], comm=MPI.COMM_SELF)
     data = coilset.open(tmp_path / "out")
     summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
     assert float(data["summary_set_mm"]) == summary["set_mm"]

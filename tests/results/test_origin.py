@@ -22,7 +22,7 @@ COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "accuracy
 @pytest.fixture(scope="module")
 def folder(example, tmp_path_factory):
     out = tmp_path_factory.mktemp("run") / "out"
-    solve(example, out, False, [*COARSE, "spring.mean_diameter=110"], False, comm=MPI.COMM_SELF)
+    solve(example, out, False, [*COARSE, "spring.mean_diameter=110"], comm=MPI.COMM_SELF)
     return out
 
 

@@ -266,7 +266,7 @@ def test_little_presetting(example):
 
 
 def test_they_are_in_the_log_the_summary_and_the_checkpoint(example, tmp_path, capsys):
-    solve(example, tmp_path / "out", False, [*COARSE, LIFTED, "contact.deepest=0.02"], False, comm=MPI.COMM_SELF)
+    solve(example, tmp_path / "out", False, [*COARSE, LIFTED, "contact.deepest=0.02"], comm=MPI.COMM_SELF)
     found = json.loads((tmp_path / "out" / "summary.json").read_text())["warnings"]
     assert [one["name"] for one in found] == ["earlier name", "lift-off", "error"]  # of the coarse mesh
     log = (tmp_path / "out" / "log.txt").read_text()

@@ -78,7 +78,7 @@ def test_a_finer_run_is_within_the_accuracy_and_can_be_continued(example, tmp_pa
         checks = iter(range(last))
         with monkeypatch.context() as patched:
             patched.setattr(Interrupt, "check", lambda self: next(checks, None) is None and _interrupt())
-            solve(example, tmp_path / name, False, FINE, False, resume, comm=MPI.COMM_SELF, voice="quiet")
+            solve(example, tmp_path / name, False, FINE, resume=resume, comm=MPI.COMM_SELF, voice="quiet")
         counts.append(next(checks, last))
         return summary(name)
 

@@ -19,7 +19,7 @@ from coilset.model.standards.rows import sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.law import case_law
-from coilset.scripts.commands.sheet import list_wires, sheet
+from coilset.scripts.commands.sheet import Options, list_wires, sheet
 
 # HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm
 PRINTED = Cylinder(5.0, 34.6, 11.5, 9.5, 105.8, 9.547, "closed and ground", 57.5)
@@ -178,14 +178,14 @@ def case(tmp_path):
 
 
 def test_command_prints_and_draws(case, tmp_path, capsys):
-    sheet(case, wire_name="EN 10270-1 SH", surface="shot peened", out=tmp_path / "out")
+    sheet(case, Options(wire="EN 10270-1 SH", surface="shot peened", out=[tmp_path / "out"]))
     printed = capsys.readouterr().out
     assert "force at 52 mm" in printed  # the working lengths of the load program
     assert "force at 40 mm" in printed
     assert "972.33 MPa" in printed
     assert (tmp_path / "out" / "goodman.png").stat().st_size > 10_000
     with pytest.raises(InputError, match="already exists; use --overwrite"):
-        sheet(case, wire_name="EN 10270-1 SH", surface="shot peened", out=tmp_path / "out")
+        sheet(case, Options(wire="EN 10270-1 SH", surface="shot peened", out=[tmp_path / "out"]))
 
 
 @pytest.mark.parametrize(("least", "said"), [(60.0, False), (1.0, True)], ids=["above block", "at block"])
@@ -193,7 +193,7 @@ def test_a_set_is_held_against_presetting_where_the_run_was_at_block(case, tmp_p
     folder = run_folder(tmp_path / "run")
     (folder / "summary.json").write_text(json.dumps({"free_length_before_mm": 105.8, "set_mm": 1.0}), encoding="utf-8")
     (folder / "history.csv").write_text(f"seat_height_mm,force_N\n{least},700\n104.8,0\n", encoding="utf-8")
-    sheet(case, folder, pictures=False)
+    sheet(case, Options(folder, pictures=False))
     printed = capsys.readouterr().out
     assert printed.split()[:2] == ["formula", "run"]
     assert ("presetting takes 1 mm" in " ".join(printed.split())) == said
@@ -213,14 +213,14 @@ def test_results_of_another_spring_are_reported(case, tmp_path, capsys, changes,
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     summary["origin"] = {"case": {"spring": entries | changes}}
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    sheet(case, folder, pictures=False)
+    sheet(case, Options(folder, pictures=False))
     printed = " ".join(capsys.readouterr().out.split())
     assert ("is of another spring" in printed) == bool(said)
     assert said is None or f"is of another spring: {said}" in printed
 
 
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
-    sheet(case, out=tmp_path / "out")
+    sheet(case, Options(out=[tmp_path / "out"]))
     assert "the allowed share of Rm depends on the wire; give --wire" in capsys.readouterr().out
     assert not (tmp_path / "out").exists()
 
@@ -275,11 +275,11 @@ def test_only_ends_that_are_free_to_turn_are_those_of_the_formula(example, setti
 
 def test_wrong_questions(case, tmp_path):
     with pytest.raises(InputError, match=r"^--surface: 'peened' is no surface; give as coiled or shot peened$"):
-        sheet(case, surface="peened", out=tmp_path / "out")
+        sheet(case, Options(surface="peened", out=[tmp_path / "out"]))
     with pytest.raises(InputError, match=r"--length: 20 mm is no working length; must be between the block length 28"):
-        sheet(case, lengths=[20.0], out=tmp_path / "out")
+        sheet(case, Options(lengths=[20.0], out=[tmp_path / "out"]))
     with pytest.raises(InputError, match=f"^{tmp_path}: holds no results of a run: there is no summary.json$"):
-        sheet(case, results=tmp_path, out=tmp_path / "out")
+        sheet(case, Options(results=tmp_path, out=[tmp_path / "out"]))
     folder = run_folder(tmp_path / "run")
     (folder / "history.csv").unlink()
     with pytest.raises(InputError, match=f"^{folder}/history.csv: cannot be read"):
