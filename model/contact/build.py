@@ -38,7 +38,6 @@ def build_contacts(
     Args:
         contact: the `contact` section of a case: kind and stiffness of the contact, friction.
         seats: the `seats` section of a case, or None between clamped ends.
-        spring: Spring.
         turns: of the stations, shape (n,).
         stations: positions, shape (n, 3), mm.
         E: Young's modulus, for the default bedding, MPa.
@@ -130,8 +129,6 @@ def build_seat(
     Args:
         end: `bottom` or `top`.
         seats: the `seats` section of a case.
-        spring: Spring.
-        points: WirePoints.
         stations: positions, shape (n, 3), mm.
         stiffness: of the bedding, N/mm per mm, and its onset, mm.
         driven: whether a load program moves the seat otherwise than along the axis.

@@ -98,7 +98,6 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
     """The conditions of a design, and its case extended by the entries needed to evaluate them.
 
     Args:
-        spec: DesignFile.
         base: raw data of the case, checked.
 
     Returns:

@@ -64,7 +64,6 @@ class Evaluator:
     """Runs the case of a design with values for its unknowns.
 
     Args:
-        design: Design.
         conditions, data: see `coilset.model.design.conditions.conditions`.
         known: records of earlier evaluations by their keys; those of other unknowns or conditions do not count.
         keep: writes the record of a new one.

@@ -16,7 +16,6 @@ def refuse_infeasible(evaluator: Evaluator, conditions: Sequence[Condition], bou
     """Look at the springs in the corners of the bounds and in their middle.
 
     Args:
-        evaluator: Evaluator.
         conditions: of the design.
         bounds: minimum and maximum values of the unknowns, shape (n, 2).
 

@@ -100,7 +100,6 @@ class Search:
     """Finds the unknowns of a design.
 
     Args:
-        evaluator: Evaluator.
         bounds: minimum and maximum values, shape (n, 2).
         conditions: Conditions.
         start: the case's own values, shape (n,); NaN where unknown. The search starts there if the uniform rod does

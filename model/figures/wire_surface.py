@@ -128,7 +128,6 @@ def tubes(run: Run, shown: Frames, rings: int) -> tuple[np.ndarray, np.ndarray]:
 
     Args:
         run: opened results.
-        shown: Frames.
         rings: along the wire.
 
     Returns:

@@ -52,7 +52,6 @@ def peen(
         radius: of the wire, mm.
         bend: curvature of its axis, 1/mm, and `curved` whether the fibres include it.
         states: before, of the rule's points and then those of the surface, shape (points, n_state), or one row for all.
-        layer: Layer.
         surface: points without weight, as in `Wire.of_disk`.
 
     Raises:

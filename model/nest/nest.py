@@ -78,7 +78,6 @@ def press(nest: Nest, report: Callable[[str, Step], object] = lambda name, step:
     """Press both springs through the heights of the nest, and let them go.
 
     Args:
-        nest: Nest.
         report: called with the name of a spring and each of its steps.
         threads: of each run.
 

@@ -39,7 +39,6 @@ class WireHeat:
 
     Args:
         rod: Rod, with sections of fibres.
-        constants: HeatConstants.
 
     Attributes:
         equation: HeatEquation.

@@ -47,7 +47,6 @@ class HeatEquation:
     Args:
         line: LineMesh; its mesh's coordinates are those of the moment.
         radius: of the wire, of all local cells, shape (local cells,), mm.
-        constants: HeatConstants.
         start: temperature at the start, K.
         element: whose sections give heat.
         stretch: length of wire over length of chord at the sections of the local cells, shape (cells, sections);

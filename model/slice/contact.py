@@ -18,9 +18,6 @@ GAUSS = 4  # contact points per edge
 class SelfContact:
     """Contact of a slice with the coil above it, and thus of the coil below with the slice.
 
-    Args:
-        body: Slice.
-
     Attributes:
         blocks: blocks of degrees of freedom that may touch.
         stiffness: pressure per penetration, N/mm³.

@@ -12,9 +12,6 @@ DIVISIONS = 4  # per side of a triangle of the mesh
 class Lattice:
     """A refined triangulation of a slice's section; points on shared sides occur once for each triangle.
 
-    Args:
-        body: Slice.
-
     Attributes:
         places: ξ, η, shape (n, 2), mm.
         triangles: three points each, shape (m, 3).

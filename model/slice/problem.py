@@ -41,7 +41,6 @@ class SliceProblem:
     """Takes a slice from equilibrium to equilibrium, driven as the top head of a spring of so many turns.
 
     Args:
-        body: Slice.
         free_ends: the ends may turn about the coil's axis (no torque); otherwise they cannot (λ = 1).
         contact: SelfContact of the body; without it coils pass through each other.
         turns: of the spring; free_length: its height, mm, by default that of its turns.

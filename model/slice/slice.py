@@ -50,8 +50,6 @@ class Slice(Continuum):
     Its last unknowns are h̄ and λ times the coil's radius, so that all unknowns are in mm and all residuals in N.
 
     Args:
-        section: SectionMesh.
-        coil: Coil.
         law: `coilset.model.material.law.law.Law`.
         temperature: K; default is the law's reference temperature.
 

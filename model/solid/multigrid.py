@@ -17,7 +17,6 @@ class VertexMultigrid:
     """Two levels of PCMG; the coarse one is solved by one cycle of GAMG with the rigid modes of the vertices.
 
     Args:
-        configuration: Configuration.
         held: blocks with prescribed displacement; the coarse space vanishes there, so that the heads are not corrected.
         pc: PETSc PC to set up; its further options come from the options database.
     """

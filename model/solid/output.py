@@ -22,7 +22,6 @@ def at_nodes(solid: Solid, values: np.ndarray) -> np.ndarray:
     A cell's nodal values stay within the range of its points: beyond it, the yield condition need not hold.
 
     Args:
-        solid: Solid.
         values: shape (owned cells, points, …).
 
     Returns:

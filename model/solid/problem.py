@@ -32,12 +32,10 @@ class SolidProblem:
     """Equilibrium of a solid under prescribed motion of its heads.
 
     Args:
-        wire: SolidMesh.
         points: the law at the points.
         solver: ``direct``, ``multigrid``, ``multigrid-cg`` or ``auto``, see coilset.model.equilibrium.newton.methods.
         precision: ε of (6.3.1): out-of-balance forces relative to the change of the heads' forces in the step.
         options: further PETSc options, which override those of the solver.
-        steps: StepControl.
 
     Attributes:
         solid: Solid.
@@ -142,7 +140,6 @@ class HeadPredictor:
 
     Args:
         iteration: the solid's Iteration.
-        solid: Solid.
         held: blocks of the heads, ghosts included.
     """
 

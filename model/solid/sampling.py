@@ -22,7 +22,6 @@ class SectionSample:
     """Points of one cross-section of a wire, followed as material points.
 
     Args:
-        solid: Solid.
         section: arc length of the section, mm.
         y, z: positions in the section, outward and along t × outward, shape (n,), mm.
 

@@ -28,7 +28,6 @@ def collect(plan: Plan, folder: str | Path, most: int = MOST_CASES) -> xr.Datase
     """The cases of a plan, from the journals of its folder.
 
     Args:
-        plan: Plan.
         folder: of the sweep.
         most: number of cases; of more, so many that are evenly spread over the plan are taken.
 

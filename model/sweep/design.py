@@ -15,7 +15,6 @@ def rows(spec: SweepSpec, base: Any) -> Rows:
     """The inputs of all cases.
 
     Args:
-        spec: SweepSpec.
         base: value of each input in the base case, needed by one_at_a_time only, a dict.
 
     Returns:

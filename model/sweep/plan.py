@@ -183,7 +183,6 @@ class Tasks(MadeWhenRead[Work]):
     """Some of what a plan has to compute.
 
     Args:
-        plan: Plan.
         numbers: of them, in the order of its `task_keys`.
     """
 

@@ -30,11 +30,7 @@ def build_input(case: Case) -> None:
 
 
 class Rehearsal:
-    """Builds cases until each listed value has occurred in one that can be built.
-
-    Args:
-        spec: SweepSpec.
-    """
+    """Builds cases until each listed value has occurred in one that can be built."""
 
     def __init__(self, spec: SweepSpec) -> None:
         self._problems: dict[Any, InputError | None] = {None: None}  # None stands for the sweep itself

@@ -68,10 +68,8 @@ def run(
     """Run the cases of `todo`.
 
     Args:
-        plan: Plan.
         todo: see `missing`.
         pool: where they run.
-        journal: Journal.
         report: called with each record after it is written.
         limits: when it ends although cases are missing.
     """

@@ -87,7 +87,6 @@ def driven(
 
     Args:
         analysis: a spring at rest after its load program; called for each run.
-        lift: Lift.
         step: of time, s; default is a 20th of the period of the first axial mode.
         seconds: duration; default is that of the lift and five periods more.
         report: called with a line before each run.

@@ -20,7 +20,6 @@ def after_run(case: Case, at: str = "end") -> Analysis:
     """The analysis of a case after its load program, gone on to a state; collective.
 
     Args:
-        case: Case.
         at: `end`, the end of the load program; or where the spring goes from there: `block`, so many mm short of it, or
             `height=`, `travel=` (mm, since the start) or `force=` (N).
 

@@ -53,7 +53,6 @@ def section_mass(rod: Rod, density: float) -> SectionMass:
     are in the place of ½ J; its centre of gravity counts as being on the axis.
 
     Args:
-        rod: Rod.
         density: kg/mm³.
     """
     place, triads = rod.placement, rod.coefficients.E
@@ -81,7 +80,6 @@ class Mass:
     Heads have no mass; a station that is fixed to a head moves with the head's unknowns.
 
     Args:
-        layout: LineLayout.
         density: kg/mm³.
     """
 

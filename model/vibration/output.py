@@ -29,7 +29,6 @@ def write_modes(folder: Path, modes: Modes, turns: np.ndarray, x: np.ndarray, ra
 
     Args:
         folder: made if needed.
-        modes: Modes.
         turns: of the stations, shape (n + 1,).
         x: positions of the stations at rest, shape (n + 1, 3), mm.
         radius: of the wire, shape (n,), mm.
@@ -60,7 +59,6 @@ def draw_modes(path: Path, modes: Modes, x: np.ndarray, title: str, source: str)
 
     Args:
         path: PNG.
-        modes: Modes.
         x: positions of the stations at rest, shape (n + 1, 3), mm.
         title, source: lines above and below.
     """

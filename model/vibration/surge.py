@@ -76,7 +76,6 @@ class Motion:
 
     Args:
         system: System of a rod.
-        newton: Newton.
         density: kg/mm³.
         velocities: initial ones of the unknowns, this rank's part, shape (size_local,), mm/s and rad/s; None: at rest.
         spectral_radius: ρ, from 0 to 1; 1: no energy is taken from the motion.

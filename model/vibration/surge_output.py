@@ -46,7 +46,6 @@ def write_surge(folder: Path, driven: Driven, turns: np.ndarray) -> None:
 
     Args:
         folder: made if needed.
-        driven: Driven.
         turns: of the stations, shape (n,).
     """
     make(folder)
@@ -71,7 +70,6 @@ def draw_surge(path: Path, driven: Driven, turns: np.ndarray, title: str, source
 
     Args:
         path: PNG.
-        driven: Driven.
         turns: of the stations, shape (n,).
         title, source: lines above and below.
     """

@@ -23,7 +23,6 @@ class Prompt:
     """Prompt after each step; usable as the report of `Analysis.run`.
 
     Args:
-        analysis: Analysis.
         say: prints a line.
         ask: returns the user's line for a prompt.
     """

@@ -33,10 +33,7 @@ class Iteration:
     """Iterates a System's increments towards the equilibrium of a load, by one of the methods.
 
     Args:
-        system: System.
-        method: Method.
         tolerance: ε of (6.3.1).
-        control: NewtonControl.
         limit: ContactLimit of the corrections.
         prepare: called with PETSc's matrix after each tangent, for preconditioners that are not PETSc's.
 

@@ -39,10 +39,7 @@ class Newton:
     """Solves a System for the increments of one step.
 
     Args:
-        system: System.
-        method: Method.
         tolerance: ε of (6.3.1).
-        control: NewtonControl.
         limit: ContactLimit; None: corrections are not limited.
         augmentation_tolerance: tolerance of the augmented Lagrangian loop, mm: contacts that have penetrated
             deeper are pressed harder by as much, and the step is solved again.

@@ -73,8 +73,6 @@ class Snap:
     """The path against the drag. Each step is committed: the wire yields along this path, not along a straight one.
 
     Args:
-        stability: Stability.
-        control: StepControl.
         solve: solves a load from a start; an equilibrium with too deep penetrations is rejected.
     """
 

@@ -35,8 +35,6 @@ class Continuation:
     """Takes a body along paths of loads.
 
     Args:
-        newton: Newton.
-        control: StepControl.
         penetration_limit: penetration beyond which a state is rejected, mm.
         starts: starting points for solving a load for a step of the given length, to be tried in order; default: the
             guess of the last steps, then the last equilibrium.

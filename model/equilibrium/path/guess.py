@@ -18,7 +18,6 @@ class Guess:
     """Guesses of a step's increments.
 
     Args:
-        system: System.
         bend: part of a step by the last rate that the change of rates may add to it; with more the path has a kink.
 
     Attributes:

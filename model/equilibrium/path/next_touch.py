@@ -26,11 +26,7 @@ MARGIN = 0.05  # distance that a trial keeps from both ends of the bracket, as a
 
 
 class NextTouch:
-    """First touches along guesses.
-
-    Args:
-        system: System.
-    """
+    """First touches along guesses."""
 
     def __init__(self, system: System) -> None:
         self.system = system

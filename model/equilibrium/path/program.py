@@ -131,7 +131,6 @@ class LoadProgram:
 
     Args:
         control: Heads, or what takes their place.
-        continuation: Continuation.
     """
 
     def __init__(self, control: Driven, continuation: Continuation) -> None:

@@ -33,7 +33,6 @@ class StepError:
     Args:
         control: Heads of a System whose body estimates errors, see Body.
         accuracy: required error of force, over the maximum force so far.
-        steps: StepControl.
     """
 
     def __init__(self, control: Heads, accuracy: float, steps: StepControl) -> None:

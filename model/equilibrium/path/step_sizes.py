@@ -81,9 +81,6 @@ class Position:
 class StepSizes:
     """Sizes of the steps along a path.
 
-    Args:
-        control: StepControl.
-
     Attributes:
         position: Position.
     """

@@ -54,7 +54,6 @@ class Checkpoint:
 
     Args:
         folder: the results folder.
-        case: Case.
         finer: number of the finer run (coilset.model.run.refinement), 0 for the case itself.
     """
 

@@ -44,7 +44,6 @@ def draw(folder: Path, plan: Plan, data: xr.Dataset) -> tuple[list[str], list[In
 
     Args:
         folder: Path to write to.
-        plan: Plan.
         data: data set of coilset.model.sweep.dataset.collect.
 
     Returns:
