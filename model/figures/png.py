@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, PathPatch
+from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 from PIL import Image
 
@@ -98,9 +98,9 @@ def draw(axes: Axes, panel: Panel, choice: int = 0) -> None:
     """
     for trace in panel.traces:
         if trace.get("meta", {"choice": choice})["choice"] == choice:
-            {"scatter": _scatter, "heatmap": _heatmap, "bar": _bar}[trace["type"]](axes, trace)
+            {"scatter": _scatter, "heatmap": _heatmap}[trace["type"]](axes, trace)
     for shape in panel.layout.get("shapes", ()):
-        {"line": _line, "circle": _circle, "path": _path}[shape["type"]](axes, shape)
+        {"line": _line, "path": _path}[shape["type"]](axes, shape)
     for note in panel.layout.get("annotations", ()):
         _annotate(axes, note)
     for name in "xy":
@@ -158,10 +158,6 @@ def _heatmap(axes: Axes, trace: Trace) -> None:
     _scale(axes, shown, trace["colorbar"])
 
 
-def _bar(axes: Axes, trace: Trace) -> None:
-    axes.bar(trace["x"], trace["y"], color=trace["marker"]["color"], label=trace.get("name"))
-
-
 def _scale(axes: Axes, shown: Any, bar: dict[str, Any]) -> None:
     axes.figure.colorbar(shown, ax=axes, label=bar["title"]["text"], shrink=bar.get("len", 1.0))
 
@@ -169,11 +165,6 @@ def _scale(axes: Axes, shown: Any, bar: dict[str, Any]) -> None:
 def _line(axes: Axes, shape: dict[str, Any]) -> None:
     line = {"color": shape["line"]["color"], "lw": shape["line"]["width"], "ls": LINES[shape["line"]["dash"]]}
     axes.axvline(shape["x0"], **line)
-
-
-def _circle(axes: Axes, shape: dict[str, Any]) -> None:
-    middle = [0.5 * (shape[f"{name}0"] + shape[f"{name}1"]) for name in "xy"]
-    axes.add_patch(Circle(middle, 0.5 * (shape["x1"] - shape["x0"]), fill=False, ec=shape["line"]["color"], lw=0.6))
 
 
 def _path(axes: Axes, shape: dict[str, Any]) -> None:
@@ -203,14 +194,10 @@ def _annotate(axes: Axes, note: dict[str, Any]) -> None:
 
 def _axis(axes: Axes, name: str, entries: dict[str, Any]) -> None:
     axes.set(**{f"{name}label": entries.get("title", {}).get("text", "")})
-    if entries.get("type") == "log":
-        axes.set(**{f"{name}scale": "log"})
     if "range" in entries:
         axes.set(**{f"{name}lim": entries["range"]})
     if entries.get("rangemode") == "tozero":
         axes.set(**{f"{name}lim": (0.0, None)})
-    if entries.get("autorange") == "reversed":
-        getattr(axes, f"invert_{name}axis")()
     if "ticktext" in entries:
         getattr(axes, f"set_{name}ticks")(entries["tickvals"], entries["ticktext"], fontsize=7)
     if "scaleanchor" in entries:

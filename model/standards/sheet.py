@@ -158,20 +158,21 @@ class Sheet:
         return self.found.get(name) if self.found else None
 
 
+def _loads(case: Case, spring: Spring) -> list[float]:
+    """Travels, mm, and forces, N, that a load program goes to; compression is positive."""
+    goals = (phase.goal(spring.free_length, spring.block_height) for phase in case.targets)
+    return [spring.free_length - value if kind == "height" else value for kind, value in goals]
+
+
 def pulls(case: Case, spring: Spring) -> bool:
     """Whether a load program pulls the spring and never compresses it."""
-    goals = [phase.goal(spring.free_length, spring.block_height) for phase in case.targets]
-    free = spring.free_length
-    pulled = [value > free if kind == "height" else value < 0.0 for kind, value in goals]
-    pressed = [value < free if kind == "height" else value > 0.0 for kind, value in goals]
-    return any(pulled) and not any(pressed)
+    loads = _loads(case, spring)
+    return min(loads, default=0.0) < 0.0 and max(loads) <= 0.0
 
 
 def rotations(case: Case, spring: Spring) -> tuple[float, ...]:
     """Rotations that a load program goes to, degrees, positive in the winding direction; none of one with a travel."""
-    goals = [phase.goal(spring.free_length, spring.block_height) for phase in case.targets]
-    free = spring.free_length
-    if any(abs(value - (free if kind == "height" else 0.0)) > AT_REST * free for kind, value in goals):
+    if any(abs(load) > AT_REST * spring.free_length for load in _loads(case, spring)):
         return ()
     found: list[float] = []
     for phase in case.loading:
@@ -199,16 +200,8 @@ def working_lengths(phases: Sequence[Phase], free_length: float, rate: float, bl
     """
     found: list[float] = []
     for phase in phases:
-        if phase.to == "block":
-            continue
-        target = phase.to
-        if target.height is not None:
-            length = target.height
-        elif target.travel is not None:
-            length = free_length - target.travel
-        else:
-            assert target.force is not None
-            length = free_length - target.force / rate
+        kind, value = phase.goal(free_length, block)
+        length = value if kind == "height" else free_length - value / rate
         if block < length < free_length and all(abs(length - other) > 1e-9 for other in found):
             found.append(length)
     return found
