@@ -67,7 +67,7 @@ def explain(error: ValidationError) -> tuple[str, str]:
         problem += "; a number in quotation marks is one"
     if first["type"] in ("float_type", "int_type") and isinstance(first["input"], str):
         problem += _number_in_words(first["input"])
-    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+    more = f" (the first of {len(found)} errors)" if len(found) > 1 else ""
     return ".".join(parts), f"{given}{problem}{more}"
 
 

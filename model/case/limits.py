@@ -1,7 +1,7 @@
 """The `limits` section of a case: between which values results must be."""
 
 import re
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Unit
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
@@ -28,6 +28,7 @@ def _two(values: list[float]) -> list[float]:
 class About(Strict):
     """A tolerance about a nominal value, which is that of the finished spring."""
 
+    ELSEWHERE: ClassVar = dict.fromkeys(("at_least", "at_most"), "coilset design; here give [low, high]")
     nominal: Annotated[float, Unit("of the result"), Field(description="middle of the tolerance")]
     tolerance: Annotated[
         Annotated[str, AfterValidator(_grade), Tag("(grade)")]

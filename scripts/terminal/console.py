@@ -47,8 +47,10 @@ class Console(console.Console):
         self.print(text, markup=False, soft_wrap=whole)
 
     def pairs(self, rows: Iterable[tuple[str, str]]) -> None:
-        """Names and values, in two columns without heads."""
+        """Names and values, in two columns without heads; long values are wrapped rather than names."""
+        rows = list(rows)
         made = Table(show_header=False, box=None, padding=(0, 2))
+        made.add_column(no_wrap=all(len(name) <= self.width // 2 for name, _ in rows))
         for row in rows:
             made.add_row(*row)
         self.print(made)

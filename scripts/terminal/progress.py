@@ -35,7 +35,7 @@ class Lines:
 
     def __init__(self, talks: bool = True) -> None:
         self.console = Console(quiet=not talks)
-        self._began, self._from = time.monotonic(), 0.0
+        self._began, self._from = 0.0, -1.0  # when and where the first step ended; below 0 before
 
     def say(self, text: str) -> None:
         """A line about the run."""
@@ -47,13 +47,13 @@ class Lines:
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
         """The run begins or continues."""
-        self.analysis, self._began, self._from = analysis, time.monotonic(), _done(analysis)
+        self.analysis, self._from = analysis, -1.0
         for warning in analysis.setup.warnings:
             self.warn(warning.message)
         targets = ", ".join(phase.label for phase in analysis.case.loading)
         elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size
         self.say(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
-        if resumed and self._from >= 1.0:
+        if resumed and _done(analysis) >= 1.0:
             self.say(f"all {analysis.continuation.number} steps are there: only the results are written again")
             return
         if resumed:
@@ -62,7 +62,7 @@ class Lines:
 
     def again(self, analysis: Analysis, finer: str) -> None:
         """A finer run of the same case begins or continues; `finer` names what is finer."""
-        self.analysis, self._began, self._from = analysis, time.monotonic(), _done(analysis)
+        self.analysis, self._from = analysis, -1.0
         self.say(f"the estimated error exceeds the accuracy: again with {finer}")
         self.say(f"{HEAD}{'points':>7}  contacts")
 
@@ -76,8 +76,11 @@ class Lines:
         self.console.print(row, soft_wrap=True)
 
     def _left(self, step: Step) -> str:
-        """Remaining time at the speed so far; empty if it is short, or unknown."""
-        spent, done = time.monotonic() - self._began, _done(self.analysis, step)
+        """Remaining time at the speed since the first step, which may compile; empty if it is short, or unknown."""
+        done = _done(self.analysis, step)
+        if self._from < 0.0:
+            self._began, self._from = time.monotonic(), done
+        spent = time.monotonic() - self._began
         left = spent * (1.0 - done) / max(done - self._from, 1e-9)
         return "" if spent < SOON or left < SOON else f"  [dim]{duration(left)} left[/]"
 

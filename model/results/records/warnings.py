@@ -252,13 +252,12 @@ def _creep(setup: Setup, result: Result) -> Iterator[Warning]:
             yield Warning("creep", name, message, value, most, unit)
 
 
-ITSELF = "and coilset solve runs again by itself where the case leaves that out and it suffices"
 MORE = {
-    "mesh": f"more mesh.elements_per_turn reduce it, {ITSELF}",
-    "section": f"more points, mesh.section.radial and angular, reduce it, {ITSELF}",
-    "contact": f"a greater contact.bedding reduces it, {ITSELF}",
+    "mesh": "more mesh.elements_per_turn reduce it",
+    "section": "more points, mesh.section.radial and angular, reduce it",
+    "contact": "a greater contact.bedding reduces it",
     "warping": "mesh.section.kind: warping reduces it",
-    "steps": f"a smaller accuracy or more steps reduce it, {ITSELF}",
+    "steps": "a smaller accuracy or more steps reduce it",
 }
 """What makes an error smaller, by its cause."""
 

@@ -6,7 +6,7 @@ from coilset.model.case import Case
 from coilset.model.case.targets import check_known
 from coilset.model.material import library
 from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
+from coilset.model.material.law.law import CELSIUS, Law
 from coilset.model.standards.wires.certificate import saturating
 from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
@@ -88,6 +88,8 @@ def _softened(wire: Wire, temperature: float) -> float:
     low, high = SLOPE_RANGE
     if not low <= temperature <= high:
         problem = f"{temperature:g} K: the slope of G is used from {low:g} to {high:g} K only"
+        if low <= temperature + CELSIUS <= high:
+            problem += f"; {temperature:g} °C is {temperature + CELSIUS:g} K"
         raise InputError(f"{problem}; give a material file for this temperature", "temperature")
     return 1.0 - slope.value * (temperature - ROOM_TEMPERATURE)
 

@@ -13,6 +13,7 @@ from coilset.model.standards.wires.wire import Wire
 from coilset.model.standards.wires.wire_file import WireFile, with_common
 
 FOLDER = Path(__file__).parent
+MANY = 6  # wires that a message names
 
 
 def own_folder() -> Path:
@@ -54,9 +55,9 @@ def wire(name: str) -> Wire:
     """
     by_key = {_key(known): known for known in names()}
     if _key(name) not in by_key:
-        parts = [key for key in by_key if _key(name) and key.endswith(_key(name))]
+        parts = [key for key in by_key if _key(name) and (key.endswith(_key(name)) or key.startswith(_key(name)))]
         near = [by_key[key] for key in parts or get_close_matches(_key(name), by_key, 1, 0.7)]
-        known = f"is {near[0]} meant?" if near else "`coilset sheet --wires` lists them"
+        known = f"is {' or '.join(near)} meant?" if 0 < len(near) <= MANY else "`coilset sheet --wires` lists them"
         raise InputError(f"'{shortened(name)}' is not a known wire; {known}", "material.wire")
     name = by_key[_key(name)]
     file, entry = _wires()[name]
