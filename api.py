@@ -273,6 +273,8 @@ class Result:
         >>> sorted(os.listdir(folder))
         ['fields', 'history.csv', 'points.nc', 'seats.csv', 'summary.json']
         """
+        if not overwrite and Path(folder, "summary.json").exists():
+            raise InputError("already holds results; overwrite=True replaces them", "", folder)
         refuse_results(folder, overwrite)
         shutil.copytree(self.folder, folder, dirs_exist_ok=True)
 

@@ -108,7 +108,8 @@ def check_times(case: Case, law: Law) -> None:
             )
         if law.creep is None and (phase.heat or law.data.rate is None):
             raise InputError(
-                f"'{law.name}' does not creep, so that time changes nothing; give a material with creep",
+                f"'{law.name}' does not creep, so that time changes nothing; give a material with creep, "
+                "or leave it out",
                 f"loading.{number}.{word}",
             )
         if phase.heat:

@@ -64,6 +64,13 @@ def test_an_undamaged_one_goes_on(example, folder):
     assert json.loads((folder / "summary.json").read_text())["steps"] == 2
 
 
+@pytest.mark.parametrize(("complete", "words"), [(False, "holds an interrupted run; use --resume"), (True, "already")])
+def test_an_interrupted_run_is_told_from_a_complete_one(folder, complete, words):
+    (folder / "summary.json").write_text(json.dumps({"complete": complete}))
+    with pytest.raises(InputError, match=words):
+        folders.refuse_results(folder, False)
+
+
 @pytest.mark.parametrize("force", [False, True])
 def test_pictures_of_mesh_go_only_where_results_are_replaced(example, tmp_path, force):
     (tmp_path / "drawing.png").write_text("of this spring, or of another")

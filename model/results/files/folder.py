@@ -109,6 +109,14 @@ def refuse_to_replace(paths: Iterable[Path], force: bool) -> None:
             raise InputError("already exists; use --overwrite to overwrite it", "", path)
 
 
+def _complete(folder: Path) -> bool:
+    """Whether a folder holds the results of a complete run."""
+    try:
+        return bool(json.loads((folder / "summary.json").read_text(encoding="utf-8"))["complete"])
+    except (OSError, ValueError, LookupError, TypeError):
+        return False
+
+
 def refuse_results(folder: str | Path, force: bool) -> None:
     """Check whether a run may write into a folder, and leave it as it is.
 
@@ -121,11 +129,12 @@ def refuse_results(folder: str | Path, force: bool) -> None:
     )
     folder = Path(folder)
     with making(folder):
-        if (folder / "summary.json").exists() and not force:
+        interrupted = (folder / "checkpoint" / "state.npz").exists() and not _complete(folder)
+        if (folder / "summary.json").exists() and not (force or interrupted):
             raise InputError(
                 "already holds results; use --overwrite to replace them, or another --out", "--out", folder
             )
-        if (folder / "checkpoint" / "state.npz").exists() and not force:
+        if interrupted and not force:
             raise InputError(
                 "holds an interrupted run; use --resume to continue it, --overwrite to start again, or another --out",
                 "--out",
