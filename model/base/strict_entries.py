@@ -108,7 +108,8 @@ def _check_names(group: type[Strict], data: dict) -> None:
     for name in data:
         if name not in known:
             left = [other for other in known if other not in data]
-            near = get_close_matches(str(name), known, 1, 0.8) or get_close_matches(str(name), left, 3)
+            near = get_close_matches(str(name), known, 1, 0.8) or [one for one in left if one.startswith(f"{name}_")]
+            near = near or get_close_matches(str(name), left, 3)
             hint = f"is {' or '.join(near)} meant?" if near else f"the entries here are {', '.join(known)}"
             if name in group.ELSEWHERE:
                 hint = f"a file with it is for {group.ELSEWHERE[str(name)]}"
