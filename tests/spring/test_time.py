@@ -149,7 +149,7 @@ def test_a_fast_press_carries_more_and_then_relaxes(viscous):
         (
             [{"hold": {"hours": 1}}],
             {"material": "ck15", "temperature": 293.15},
-            "loading.0.hold: 'ck15' does not creep, so that time changes nothing; give a material with creep, or leave it out",
+            "loading.0.hold: 'ck15' does not creep, so that time changes nothing; give a material with creep, or leave",
         ),
         (
             [{"heat": {"to": 700, "hours": 1}}],

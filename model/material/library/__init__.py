@@ -38,7 +38,7 @@ def load(name: str | Path, **options: Any) -> Law:
     if name not in names():
         known = ", ".join(names())
         raise InputError(
-            f"'{shortened(name)}' is neither a material of the library ({known}) nor a .yaml file; a wire of a standard "
+            f"'{shortened(name)}' is neither a material of the library ({known}) nor a .yaml file; a standard wire "
             "is given as in {wire: EN 10270-1 SH}",
             "material",
         )
