@@ -70,7 +70,7 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     yield Row("mean diameter D", s.D, "mm", "", GIVEN)
     yield Row("spring index w", s.index, "", "D/d", DERIVED)
     yield Row("active turns n", s.n, "", f"of {s.turns:g}, ends {s.ends}", GIVEN)
-    note = f"set {round(set_mm, 6) + 0.0:.4g} mm" if after else ""  # no -0 of a spring that stays elastic
+    note = "" if set_mm is None else f"set {round(set_mm, 6) + 0.0:.4g} mm"  # no -0 of a spring that stays elastic
     yield Row("free length L0", s.length, "mm", "", GIVEN, after, note)
     tails = f"with the {'hooks' if sheet.pulled else 'arms'}; " if sheet.beyond else ""
     yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, f"{tails}the helix is longer by 1/cos α")
