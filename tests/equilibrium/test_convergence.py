@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from coilset.model.equilibrium.newton.convergence import EquilibriumTest, Reason, reason_in_words
+from coilset.model.equilibrium.newton.convergence import EquilibriumTest, Imbalance, Reason, reason_in_words
 from coilset.model.equilibrium.newton.iteration import CRAWL, CRAWLS, Iteration
 from coilset.model.equilibrium.newton.methods import METHODS
 from coilset.model.equilibrium.settings import NewtonControl
@@ -38,6 +38,25 @@ def test_a_new_least_residual_is_waited_for_anew():
     assert lost([1.0, 2.0, 2.0, 0.9, 2.0, 2.0, 0.8, 2.0, 2.0], 3) is None
     assert lost([1.0, 2.0, 2.0, 0.9, 2.0, 2.0, 2.0], 3) == (6, Reason.DIVERGED_LOCAL_MIN)
     assert lost([1.0, 1.0, 1.0, 1.0], 3) == (3, Reason.DIVERGED_LOCAL_MIN)  # the same once more is not less
+
+
+@pytest.mark.parametrize(
+    ("norms", "met_at"),
+    [
+        ([1e-1, 1e-3, 1e-5, 1e-10], 3),  # falls on: ε of the change, 1 N, decides
+        ([1e-1, 1e-3, 4e-6, 3e-6], 3),  # no longer halves, below 1e-7 of 100 N
+        ([1e-1, 1e-3, 4e-5, 3e-5, 2.9e-5], None),  # above
+        ([3e-6, 1e-6, 4e-7, 1e-7], None),  # halves
+    ],
+)
+def test_forces_that_no_longer_halve_are_in_equilibrium_near_that(norms, met_at):
+    """A step that changes 100 N by 1 N: where the law has kinks, forces jump by more than ε of that."""
+    test = EquilibriumTest(1e-9, 24)
+    test.begin(norms[0])
+    met = [test.is_met(Imbalance(norm, 1.0, 100.0, 0.0), 1e-9, 0.0) for norm in norms]
+    assert met == [index == met_at for index in range(len(norms))]
+    test.begin(norms[0])  # the next solve begins anew
+    assert not test.is_met(Imbalance(3e-6, 1.0, 100.0, 0.0), 1e-9, 0.0)
 
 
 def test_growth_without_bound_ends_at_once():

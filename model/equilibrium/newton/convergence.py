@@ -26,6 +26,10 @@ WORDS = {
     "DIVERGED_INNER": "the preconditioning step found no state",
 }
 
+# Of what the supports carry: out-of-balance forces that no longer halve are in equilibrium up to here. Where points are
+# at the yield surface or coils at the edge of contact, forces jump by some 1e-8, and a short step adds little more.
+STALLED = 1e-7
+
 
 def reason_in_words(reason: int) -> str:
     """PETSc's reason for the end of a solve, in words."""
@@ -40,11 +44,13 @@ class Imbalance(NamedTuple):
         residual_norm: |r − f| of the out-of-balance forces, or their sum if that is larger, N. Moments count as forces
             at the end of an arm, the body's extent.
         change: norm of the change of loads and reactions since the step's start |²R − ²F|, N.
+        carried: norm of the reactions at the supports, N.
         missed: part of the prescribed increments that is still missing.
     """
 
     residual_norm: float
     change: float
+    carried: float
     missed: float
 
     @property
@@ -60,10 +66,10 @@ def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
     sums = _sums(out, load.is_held, reactions.trial, reactions.equilibrium, load.supports, *places)
     if system.comm.size > 1:
         sums = system.comm.allreduce(sums)
-    free, missed, change = np.sqrt(sums[4:]).tolist()
-    missed /= system.body.constraint_weight
+    free, missed, change, carried = np.sqrt(sums[4:]).tolist()
+    missed /= system.body.constraint_weight * (load.prescribed if load.prescribed > 0.0 else 1.0)
     whole = math.hypot(*sums[:3].tolist())
-    return Imbalance(max(free, whole), change, missed / load.prescribed if load.prescribed > 0.0 else missed)
+    return Imbalance(max(free, whole), change, carried, missed)
 
 
 @njit(cache=True)
@@ -77,8 +83,8 @@ def _sums(
     directions: np.ndarray,
 ) -> np.ndarray:
     """Of the residual where nothing is held: x, y, z and all else; then squares: of the residual there, of that where
-    something is held, and of the reactions' change at the supports."""
-    sums = np.zeros(7)
+    something is held, of the reactions' change at the supports, and of these reactions."""
+    sums = np.zeros(8)
     for i in range(len(F)):
         if is_held[i]:
             sums[5] += F[i] * F[i]
@@ -87,6 +93,7 @@ def _sums(
             sums[4] += (F[i] / arms[i]) ** 2
     for i in supports:
         sums[6] += ((reactions[i] - before[i]) / arms[i]) ** 2
+        sums[7] += (reactions[i] / arms[i]) ** 2
     return sums
 
 
@@ -100,16 +107,21 @@ class EquilibriumTest:
 
     def __init__(self, tolerance: float, stagnation: int) -> None:
         self.tolerance, self.stagnation = tolerance, stagnation
-        self._first = self._least = np.inf
+        self._first = self._least = self._last = np.inf
         self._least_at = 0
 
     def begin(self, norm: float, spurious: float = 0.0) -> None:
         """Begin a solve with the initial norm of the residual, and the size of spurious forces of corrections."""
         self._first, self._least, self._least_at = max(norm, spurious), norm, 0
+        self._last = np.inf
 
     def is_met(self, found: Imbalance, tolerance: float, rounding: float) -> bool:
-        """Whether it is an equilibrium to ε = `tolerance`, or to `rounding`, N."""
-        return found.missed <= self.tolerance and found.residual_norm <= max(tolerance * found.change, rounding)
+        """Whether it is an equilibrium to ε = `tolerance`, to `rounding`, N, or as near as the iteration comes."""
+        residual, last = found.residual_norm, self._last
+        self._last = residual
+        if found.missed > self.tolerance:
+            return False
+        return residual <= max(tolerance * found.change, rounding) or 0.5 * last < residual <= STALLED * found.carried
 
     def is_lost(self, iteration: int, norm: float, divergence: float) -> int | None:
         """The reason to give up: a residual that has grown by the factor `divergence`, or no longer falls."""
