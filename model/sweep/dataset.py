@@ -21,6 +21,7 @@ from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import are_numbers
 
 MOST_CASES = 20_000  # in a data set and its figures; all cases of a larger sweep are in its Parquet file
+ROUNDING = 1e-9  # mm, N or MPa: a response below is one of arithmetic, as the set of a spring that stays elastic
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
 
 
@@ -59,6 +60,8 @@ def collect(plan: Plan, folder: str | Path, most: int = MOST_CASES) -> xr.Datase
         if not corrects(plan, record):
             status[at], reason[at], seconds[at] = record["status"], record["reason"], record["seconds"]
             warnings[at] = words_of_warnings(record)
+    for column in responses.values():
+        column[np.abs(column) < ROUNDING] = 0.0
     data: dict[str, Any] = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
     data |= {
         f"curve_{name}": (("case", "step"), _filled(curve, n), _attributes(*quantity(name)) | {"units": CURVE[name]})

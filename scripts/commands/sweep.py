@@ -220,7 +220,7 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
         if name in data and data[name].notnull().any():
             words, unit = dataset.quantity(name)
             values = data[name]
-            numbers = (f"{round(float(value), 9) + 0.0:.5g}" for value in (values.min(), values.mean(), values.max()))
+            numbers = (f"{float(value):.5g}" for value in (values.min(), values.mean(), values.max()))
             extents.add_row(f"{words}, {unit}", *numbers)
     console.print(extents)
     failures = [k for k, status in enumerate(data.status.values) if status == "failed"]

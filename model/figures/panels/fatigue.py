@@ -8,7 +8,7 @@ from coilset.model.figures.wire_surface import coil_turns, inside, section_turns
 from coilset.model.results.files.opened import Run
 
 NOTE = "1 where the wire just endures: amplitude of fully reversed stress that damages as much, over that endured."
-MARKED = f"{NOTE} The square is where the wire breaks first."
+MARKED = f"{NOTE} The square is where the wire would break first."
 NARROW = 1.25  # times as far away as in a view over the whole width
 PROUD = 1.15  # of the wire's radius: where the mark is, so that the surface does not hide half of it
 
@@ -46,7 +46,7 @@ def fatigue_map(run: Run) -> Panel | None:
     place = {"x": [worst["turn"]], "y": [worst["angle_deg"]], "marker": mark, "showlegend": False}
     traces.append({"type": "scatter", "mode": "markers", **place})
     finding = (
-        f"The wire breaks first at turn {worst['turn']:.2f}, {worst['angle_deg']:z.0f}° from the inside of the coil; "
+        f"The wire would break first at turn {worst['turn']:.2f}, {worst['angle_deg']:z.0f}° from the inside of the coil; "
         f"safety {worst['safety']:.2f} by {worst['criterion']}"
     )
     return Panel(
