@@ -46,8 +46,8 @@ def fatigue_map(run: Run) -> Panel | None:
     place = {"x": [worst["turn"]], "y": [worst["angle_deg"]], "marker": mark, "showlegend": False}
     traces.append({"type": "scatter", "mode": "markers", **place})
     finding = (
-        f"The wire would break first at turn {worst['turn']:.2f}, {worst['angle_deg']:z.0f}° from the inside of the coil; "
-        f"safety {worst['safety']:.2f} by {worst['criterion']}"
+        f"The wire would break first at turn {worst['turn']:.2f}, {worst['angle_deg']:z.0f}° from the inside of the "
+        f"coil; safety {worst['safety']:.2f} by {worst['criterion']}"
     )
     return Panel(
         "fatigue",
