@@ -23,8 +23,7 @@ def write_run(out: Path, setup: Setup, result: Result, summary: dict[str, Any], 
     clear(out, DERIVED)  # a continued run still has the pictures and the page of before
     write_history(out, result.steps)
     write_seats(out, result.seats)
-    points = dataset.point_state(setup, result)
-    dataset.write_points(out, dataset.with_origin(points, setup, result, made_with))
+    dataset.write_points(out, setup, result, made_with)
     write_fields(out, setup, result.snapshots)
     write_summary(out, {**summary, "origin": made_with})
 

@@ -82,8 +82,8 @@ def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     analysis, _ = example_runs["closed_and_ground"]
     data = pressure_along_wire(analysis.setup, analysis.result)
     seat = analysis.system.contacts[1]
-    turns, on_seat = data.coordinates["wire_turn"].values, data.variables["pressure"].values[:, 1]
-    assert data.coordinates["contact"].values.tolist() == ["coils", "bottom seat", "top seat"]
+    turns, on_seat = data["wire_turn"].values, data["pressure"].values[:, 1]
+    assert data["contact"].values.tolist() == ["coils", "bottom seat", "top seat"]
     place = np.searchsorted(seat.points.turns, turns)
     lengths = seat.lengths[place]
     for k in range(6):

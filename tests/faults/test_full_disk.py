@@ -86,7 +86,7 @@ WRITERS = {
     "summary": lambda out, one: folder.write_summary(out, summarise(one.setup, one.result)),
     "history": lambda out, one: folder.write_history(out, one.result.steps),
     "seats": lambda out, one: folder.write_seats(out, one.result.seats),
-    "points": lambda out, one: dataset.write_points(out, dataset.point_state(one.setup, one.result)),
+    "points": lambda out, one: dataset.write_points(out, one.setup, one.result, {}),
     "fields": lambda out, one: run_files.write_fields(out, one.setup, one.result.snapshots),
     "checkpoint": save,
     "data of a sweep": lambda out, one: sweep_data.write(out / "sweep.nc", xr.Dataset({"a": ("n", np.zeros(999))})),

@@ -1,8 +1,8 @@
 """Labelled arrays and their NetCDF file, without the libraries for reading such files, which are slow to load."""
 
 import os
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -21,40 +21,18 @@ class Variable:
         dims: a name for each dimension.
         values: numbers, or words.
         attrs: texts, such as its `units`.
+        is_beside: whether it is a coordinate along its dimensions, none of which has its name.
     """
 
     dims: tuple[str, ...]
     values: np.ndarray
     attrs: Mapping[str, str] = field(default_factory=dict)
+    is_beside: bool = False
 
 
-@dataclass(frozen=True)
-class LabelledData:
-    """Like `xarray.Dataset`: variables, coordinates along their dimensions, and attributes."""
-
-    variables: Mapping[str, Variable]
-    coordinates: Mapping[str, Variable]
-    attrs: Mapping[str, str] = field(default_factory=dict)
-
-    def merged(self, other: "LabelledData") -> "LabelledData":
-        """A copy with the variables and coordinates of another one added."""
-        return replace(
-            self, variables={**self.variables, **other.variables}, coordinates={**self.coordinates, **other.coordinates}
-        )
-
-    def all(self) -> Iterator[tuple[str, Variable]]:
-        """Names and variables, the coordinates last."""
-        yield from self.variables.items()
-        yield from self.coordinates.items()
-
-    def beside(self, name: str) -> str:
-        """Names of a variable's auxiliary coordinates, in the text form of the CF conventions."""
-        dims = set(self.variables[name].dims)
-        return " ".join(
-            one
-            for one, coordinate in self.coordinates.items()
-            if coordinate.dims != (one,) and dims.issuperset(coordinate.dims)
-        )
+def coordinates(data: Mapping[str, Variable]) -> list[str]:
+    """Names of the coordinates among variables."""
+    return [name for name, one in data.items() if one.dims == (name,) or one.is_beside]
 
 
 def reserve(path: Path, size: int) -> None:
@@ -68,8 +46,8 @@ def reserve(path: Path, size: int) -> None:
             os.posix_fallocate(file.fileno(), 0, size + HEADER)
 
 
-def write_netcdf(target: str | Path, data: LabelledData) -> None:
-    """Write a NetCDF 4 file by the conventions of CF, which xarray follows too.
+def write_netcdf(target: str | Path, data: Mapping[str, Variable], attrs: Mapping[str, str]) -> None:
+    """Write variables and attributes as a NetCDF 4 file by the conventions of CF, which xarray follows too.
 
     Raises:
         CoilsetError: if it cannot be written.
@@ -78,14 +56,14 @@ def write_netcdf(target: str | Path, data: LabelledData) -> None:
     import h5py
 
     with whole(target) as path:
-        reserve(path, sum(one.values.nbytes for _, one in data.all()))
+        reserve(path, sum(one.values.nbytes for one in data.values()))
         with h5netcdf.File(path, "w") as file:
-            for _, one in data.all():
+            for one in data.values():
                 for dim, size in zip(one.dims, one.values.shape, strict=True):
                     if dim not in file.dimensions:
                         file.dimensions[dim] = size
             # Coordinates first: they replace the places held for their dimensions, also in what has these already.
-            for name, one in sorted(data.all(), key=lambda each: each[1].dims != (each[0],)):
+            for name, one in sorted(data.items(), key=lambda each: (each[1].dims != (each[0],), each[1].is_beside)):
                 words = one.values.dtype.kind in "UO"
                 values: Any = one.values.astype(object) if words else one.values
                 made = file.create_variable(
@@ -96,6 +74,7 @@ def write_netcdf(target: str | Path, data: LabelledData) -> None:
                     fillvalue=np.nan if values.dtype.kind == "f" else None,
                 )
                 made.attrs.update(one.attrs)
-                if name in data.variables and (beside := data.beside(name)):
-                    made.attrs["coordinates"] = beside
-            file.attrs.update(data.attrs)
+                along = [other for other, it in data.items() if it.is_beside and set(it.dims) <= set(one.dims)]
+                if along and name not in coordinates(data):
+                    made.attrs["coordinates"] = " ".join(along)
+            file.attrs.update(attrs)
