@@ -531,7 +531,7 @@ def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwri
         workers.pool(folder / "workers.log") as pool,
         closing(Journal(path)) as journal,
     ):
-        run(checked, missing(checked, finished(folder, retry=False)), pool, journal)
+        run(checked, checked.work(missing(checked, finished(folder, retry=False))), pool, journal)
     data = dataset.collect(checked, folder)
     dataset.write(folder / "sweep.nc", data)
     return data

@@ -19,7 +19,7 @@ from coilset.model.results.files.folder import whole
 from coilset.model.sweep.design import rows
 from coilset.model.sweep.engines.pool import Task
 from coilset.model.sweep.keys import Keys, Model, as_rod
-from coilset.model.sweep.packed import MadeWhenRead, Row, Strings
+from coilset.model.sweep.packed import Row, Strings
 from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.shards import WHOLE, Shard
 from coilset.model.sweep.spec import SweepSpec
@@ -79,9 +79,12 @@ class Plan:
         cases = self.keys.array
         return np.concatenate([cases, np.char.rstrip(cases[: self.spec.rods], b"u")]) if self.spec.rods else cases
 
-    def tasks(self) -> "Tasks":
-        """Everything to compute, in the order of `task_keys`."""
-        return Tasks(self, np.arange(len(self) + min(self.spec.rods, len(self))))
+    def work(self, numbers: Iterable[int]) -> Iterator[Work]:
+        """Some of what is to be computed, by its numbers in the order of `task_keys`."""
+        for number in numbers:
+            again, case = divmod(int(number), len(self))
+            key = self.keys[case]
+            yield self.rows[case], as_rod(key) if again else key, "rod" if again else self.spec.model
 
     def add(self, cases: Iterable[tuple[Row, str]]) -> None:
         """Append cases that are not of the design: inputs and keys."""
@@ -177,24 +180,3 @@ class Plan:
         spec = self.spec.model_dump(mode="json", exclude={"figures"})
         made_of = json.dumps([spec, self.base, folders], sort_keys=True, default=str)
         return hashlib.blake2b(made_of.encode() + self.rows.content()).hexdigest()
-
-
-class Tasks(MadeWhenRead[Work]):
-    """Some of what a plan has to compute.
-
-    Args:
-        numbers: of them, in the order of its `task_keys`.
-    """
-
-    def __init__(self, plan: Plan, numbers: np.ndarray) -> None:
-        self.plan, self.numbers = plan, numbers
-
-    def __len__(self) -> int:
-        return len(self.numbers)
-
-    def item(self, at: int) -> Work:
-        """Inputs, key and model."""
-        plan = self.plan
-        copy, case = divmod(int(self.numbers[at]), len(plan))
-        key = plan.keys[case]
-        return (plan.rows[case], as_rod(key), "rod") if copy else (plan.rows[case], key, plan.spec.model)

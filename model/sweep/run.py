@@ -1,7 +1,7 @@
 """Run the missing cases of a plan, and record each as it ends."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from itertools import islice
@@ -12,7 +12,7 @@ import numpy as np
 from coilset.model.sweep.engines.pool import Pool, Record, Task
 from coilset.model.sweep.journal import Journal, journals, read_records
 from coilset.model.sweep.packed import Strings
-from coilset.model.sweep.plan import Plan, Tasks, Work
+from coilset.model.sweep.plan import Plan, Work
 from coilset.model.sweep.shards import WHOLE, Shard
 
 AHEAD = 2  # messages submitted per worker, so that none is idle
@@ -26,8 +26,8 @@ def finished(folder: str | Path, retry: bool) -> Strings:
     return Strings(record["key"] for record in done if not (retry and record["status"] == "failed"))
 
 
-def missing(plan: Plan, done: Iterable[str], shard: Shard = WHOLE) -> Sequence[Work]:
-    """What is not in `done`, each once; of a shard, its cases by each model."""
+def missing(plan: Plan, done: Iterable[str], shard: Shard = WHOLE) -> np.ndarray:
+    """Numbers for `Plan.work` of what is not in `done`, each once; of a shard, its cases by each model."""
     keys, numbers = plan.task_keys, np.array(shard.cases(len(plan)), dtype=int)
     numbers = np.concatenate([numbers, len(plan) + numbers[numbers < plan.spec.rods]])
     _, first = np.unique(keys[numbers], return_index=True)
@@ -35,7 +35,7 @@ def missing(plan: Plan, done: Iterable[str], shard: Shard = WHOLE) -> Sequence[W
     there = np.sort(done.array if isinstance(done, Strings) else Strings(done).array)
     if len(there):
         numbers = numbers[there[np.searchsorted(there[:-1], keys[numbers])] != keys[numbers]]
-    return Tasks(plan, numbers)
+    return numbers
 
 
 @dataclass
@@ -68,7 +68,7 @@ def run(
     """Run the cases of `todo`.
 
     Args:
-        todo: see `missing`.
+        todo: see `Plan.work`.
         pool: where they run.
         report: called with each record after it is written.
         limits: when it ends although cases are missing.

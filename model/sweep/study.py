@@ -65,7 +65,7 @@ class Study:
             InputError: an input is missing or unknown, or a case cannot be.
         """
         if values is None:
-            rows = [(row, key) for row, key, _model in missing(self.plan, self._done | self._asked)[:n]]
+            rows = [(row, key) for row, key, _ in self.plan.work(missing(self.plan, self._done | self._asked)[:n])]
         else:
             rows = [self._given(inputs) for inputs in values]
             self._extra += rows

@@ -143,7 +143,7 @@ def _lead(plan: Plan, out: Path, options: Options, pool: Pool, console: Console)
         console.say(f"{plan.path.name}{share}: {total} cases, {total - left} done already, {pool.workers} at a time")
         progress = Bar(left, console)
         with progress.bar:
-            run(plan, todo, pool, journal, progress.report, limits)
+            run(plan, plan.work(todo), pool, journal, progress.report, limits)
         if progress.done < left:
             console.print(f"stopped at its limit with {left - progress.done} cases left; --resume continues")
 

@@ -33,7 +33,7 @@ def solve(workers):
         records = []
         folder.mkdir(exist_ok=True)
         journal = Journal(folder / shard.journal, locked=False)
-        todo = missing(plan, finished(folder, retry=False), shard)
+        todo = plan.work(missing(plan, finished(folder, retry=False), shard))
         if pool is not None:
             run(plan, todo, pool, journal, records.append, limits)
         else:
@@ -51,7 +51,7 @@ def plan(write_sweep):
 
 
 def summaries(plan, folder):
-    return {one["key"]: one["summary"] for one in Records(folder, (key for _, key, _ in plan.tasks()))}
+    return {one["key"]: one["summary"] for one in Records(folder, plan.task_keys)}
 
 
 def test_shards_together_are_the_whole_and_none_runs_twice(plan, tmp_path, solve):
@@ -60,7 +60,7 @@ def test_shards_together_are_the_whole_and_none_runs_twice(plan, tmp_path, solve
     shards = [(Plan(plan.path, shard=shard), shard) for shard in (Shard(1, 3), Shard(2, 3), Shard(3, 3))]
     assert [sum(map(bool, part.keys)) for part, _shard in shards] == [3, 3, 2]  # only its own cases are checked
     ran = [one["key"] for part, shard in shards for one in solve(part, shared, shard)]
-    assert sorted(ran) == sorted(key for _, key, _ in plan.tasks())
+    assert sorted(ran) == sorted(key.decode() for key in plan.task_keys)
     assert len(set(ran)) == 10
     assert summaries(plan, shared) == summaries(plan, whole)
     assert solve(plan, shared, Shard(2, 3)) == []  # again: nothing is missing
@@ -112,7 +112,7 @@ def test_parquet_has_every_record_with_units(plan, tmp_path, solve):
     folder = tmp_path / "out"
     solve(plan, folder)
     path = folder / "sweep.parquet"
-    records = Records(folder, (key for _, key, _ in plan.tasks()))
+    records = Records(folder, plan.task_keys)
     assert records.counts == {"done": 10, "failed": 0, "missing": 0}
     assert parquet.write(path, plan, records) == 10
     table = pq.read_table(path)

@@ -103,7 +103,7 @@ def test_sweep_over_ranks_is_the_sweep_of_one_process(write_sweep, tmp_path):
         if pool is not None:
             assert pool.workers == COMM.size - 1
             with closing(Journal(tmp_path / "journal.jsonl")) as journal:
-                run(plan, missing(plan, ()), pool, journal)
+                run(plan, plan.work(missing(plan, ())), pool, journal)
     if COMM.rank == 0:
         records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
         assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed"]
@@ -118,7 +118,7 @@ def test_two_ranks_share_a_case(write_sweep, tmp_path):
         if pool is not None:
             assert pool.workers == (COMM.size - 1) // 2
             with closing(Journal(tmp_path / "journal.jsonl")) as journal:
-                run(plan, missing(plan, ()), pool, journal)
+                run(plan, plan.work(missing(plan, ())), pool, journal)
     if COMM.rank == 0:
         records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
         assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed"]

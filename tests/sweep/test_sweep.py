@@ -49,7 +49,8 @@ def sweep(workers):
     def sweep(plan, folder, retry=False, workers=workers):
         ran = []
         with closing(Journal(folder / "journal.jsonl")) as journal, workers.pool(folder / "log") as pool:
-            run(plan, missing(plan, finished(folder, retry)), pool, journal, lambda record: ran.append(record["key"]))
+            todo = plan.work(missing(plan, finished(folder, retry)))
+            run(plan, todo, pool, journal, lambda record: ran.append(record["key"]))
         return ran
 
     return sweep
