@@ -36,7 +36,7 @@ inside), each of shape (n,), mm."""
 
 @dataclass(frozen=True)
 class Wire:
-    """The stress in a wire near one turn: its field, its radius, mm, and whether its angle turns from y to z."""
+    """The stress in a wire near one turn: its field, and its radius, mm."""
 
     field: Field
     radius: float

@@ -83,7 +83,7 @@ def en15800_grade(text: str) -> en15800.Grade:
     """The grade in `EN 15800 grade 2`."""
     found = GRADE.fullmatch(text)
     assert found is not None
-    return {"1": 1, "2": 2, "3": 3}[found[1]]  # type: ignore[return-value]
+    return en15800.GRADES[int(found[1])]
 
 
 def judged(limits: tuple[Limit, ...], summary: Mapping[str, Any]) -> tuple[dict[str, Any], ...]:

@@ -9,11 +9,12 @@ alone.
 
 from bisect import bisect_left
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from coilset.model.standards import en13906
 
 Grade = Literal[1, 2, 3]
+GRADES: dict[int, Grade] = {grade: grade for grade in get_args(Grade)}
 FACTORS = {1: 0.63, 2: 1.0, 3: 1.6}  # Q of the grades
 # range of validity of the standard, table 1, mm; annex A has more of wire up to 20 mm
 WIRES, WIDEST_D, LONGEST, FEWEST_TURNS, INDICES = (0.07, 16.0), 200.0, 630.0, 2.0, (4.0, 20.0)

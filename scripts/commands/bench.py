@@ -57,9 +57,7 @@ def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
             for elements in SHARED[full]
         ]
     record["load_after"] = os.getloadavg()[0]
-    make(folder)
-    with whole(folder / "bench.json") as path:
-        path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    _keep(folder / "bench.json", record)
     for one in tables(record):
         console.print(one)
     found = record["machine"]
@@ -88,9 +86,7 @@ def bench_springs(out: str, count: int, against: str | None = None) -> None:
 
     with console.status(f"running {count} springs"):
         rows = press_springs(starts, range(count), environment, report)
-    make(folder)
-    with whole(folder / "springs.json") as path:
-        path.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    _keep(folder / "springs.json", rows)
     for side, title in zip(range(len(starts)), ("random springs", "the same in the other checkout"), strict=False):
         console.print(cost_table(rows, side, title))
     if len(starts) > 1:
@@ -121,6 +117,12 @@ def bench_million(out: str, fraction: float) -> None:
         f"collecting {found.collect_GiB:.2f} GiB\n"
         f"on disk {found.journal_bytes:,.0f} bytes a case in the journal, {found.parquet_bytes:,.0f} in Parquet"
     )
+
+
+def _keep(file: Path, record: Any) -> None:
+    make(file.parent)
+    with whole(file) as path:
+        path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
 
 
 def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int = 1) -> dict[str, Any]:

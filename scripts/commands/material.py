@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from coilset.model.base.errors import InputError, naming
 from coilset.scripts.commands.fitting import relaxation, springs
-from coilset.scripts.commands.fitting.files import files_to_write, folder_of, write_material, write_picture
+from coilset.scripts.commands.fitting.files import files_to_write, write_material, write_picture
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target
@@ -44,7 +44,7 @@ def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     from coilset.scripts.terminal.console import Console
 
     law = library.load(material)
-    picture = files_to_write(folder_of(out, law.name), force, "functions.png")[0]
+    picture = files_to_write(out, law.name, force, "functions.png")[0]
     console = Console()
     console.print(f"[bold]{law.name}[/]: {law.description}\nsource: {law.source}\nvalid: {law.validity.remark}")
     console.print(_constants(law))
@@ -68,7 +68,7 @@ def run_program(
     announce_compiling()
     law, steps = library.load(material, spin=spin), programs.read(program)
     name = Path(program).stem
-    table, picture = files_to_write(folder_of(out, law.name), force, f"{name}.csv", f"{name}.png")
+    table, picture = files_to_write(out, law.name, force, f"{name}.csv", f"{name}.png")
     console = Console()
     with naming(program):
         history = programs.run(law, steps)
@@ -97,7 +97,7 @@ def certificate(
     from coilset.model.standards.wires.certificate import Certificate
     from coilset.scripts.terminal.console import Console
 
-    (file,) = files_to_write(folder_of(out, name), force, f"{name}.yaml")
+    (file,) = files_to_write(out, name, force, f"{name}.yaml")
     stated = Certificate(strength, proof_stress, shear_modulus, poisson, elastic_limit)
     data = stated.material(name, source)
     make(file.parent)
@@ -144,7 +144,7 @@ def fit(
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
-    file, picture = files_to_write(folder_of(out, name), force, f"{name}.yaml", "fit.png")
+    file, picture = files_to_write(out, name, force, f"{name}.yaml", "fit.png")
     tests = [experiments.read_test(path, engineering) for path in data]
     if back_stresses is None:
         result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
@@ -202,7 +202,7 @@ def creep(
     ):
         if value not in known:
             raise InputError(f"'{value}' is none of {', '.join(known)}", option)
-    file, picture = files_to_write(folder_of(out, name), force, f"{name}.yaml", f"{name}.png")
+    file, picture = files_to_write(out, name, force, f"{name}.yaml", f"{name}.png")
     error = POINT_ERROR if points and loss_error is None else loss_error
     tests = relaxation.read(data, points)
     result = fit_creep(library.load(material), tests, form, hardening, time_exponent, error)

@@ -14,7 +14,7 @@ from coilset.model.results.files.folder import refuse_results
 from coilset.model.results.records.record import Step
 from coilset.model.runtime.threads import usual
 from coilset.scripts.terminal.console import Console
-from coilset.scripts.terminal.progress import quantity, without_minus
+from coilset.scripts.terminal.progress import quantity
 from coilset.scripts.terminal.target import results_folder
 
 
@@ -31,7 +31,7 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
     refuse_results(folder, force)
 
     def report(name: str, step: Step) -> None:
-        console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{without_minus(step.force_N, 3):>14} N")
+        console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{step.force_N:z14.3f} N")
 
     pressed = press(wanted, report, threads or usual(1))
     found = output.write(folder, pressed, force, pictures)

@@ -19,7 +19,7 @@ from coilset.model.results.files.folder import make, refuse_to_replace
 from coilset.model.standards import from_results, goodman
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.case_warnings import sheet_warnings
-from coilset.model.standards.en15800 import Grade
+from coilset.model.standards.en15800 import GRADES
 from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.warnings import spring_warnings
@@ -32,7 +32,6 @@ from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import SHEETS, results_folder
 
 FIGURE = "goodman.png"
-GRADES: dict[int, Grade] = {grade: grade for grade in get_args(Grade)}
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from coilset.model.turn import output
 from coilset.model.turn.analysis import GRID, LAYERS, TurnAnalysis, TurnStep
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.console import Console, table
-from coilset.scripts.terminal.progress import duration, quantity, without_minus
+from coilset.scripts.terminal.progress import duration, quantity
 from coilset.scripts.terminal.target import results_folder
 
 NOTE = "both are turns between heads that do not rotate, without coils that touch or seats (docs/solid.md)"
@@ -65,7 +65,7 @@ def solid_case(
     with Interrupt(comm, console.say) as interrupt:
 
         def report(step: TurnStep) -> None:
-            forces = "".join(f"{without_minus(force, 3):>11}" for force in (step.force_N, step.rod_force_N))
+            forces = "".join(f"{force:z11.3f}" for force in (step.force_N, step.rod_force_N))
             console.print(f"{step.number:5d}{step.travel_mm:11.4f} {forces}{step.iterations:6d}")
             interrupt.check()
 

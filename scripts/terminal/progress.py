@@ -199,18 +199,12 @@ def _done(analysis: Analysis, step: Step | None = None) -> float:
 
 def step_row(step: "Step | SliceStep") -> str:
     """The columns common to the steps of rod and slice, under HEAD."""
-    force = without_minus(step.force_N, 3)
-    return f"{step.number:5d}{step.seat_height_mm:10.4f}{force:>12}{step.iterations:6d}"
+    return f"{step.number:5d}{step.seat_height_mm:10.4f}{step.force_N:z12.3f}{step.iterations:6d}"
 
 
 def quantity(value: float | None, unit: str, digits: int = 4) -> str:
     """A value with its unit; `none` where the run gave none, as of a spring that was not released."""
-    return "none" if value is None else f"{without_minus(value, digits)} {unit}"
-
-
-def without_minus(value: float, digits: int) -> str:
-    """A value with a number of decimals, without -0.0."""
-    return f"{round(value, digits) + 0.0:.{digits}f}"
+    return "none" if value is None else f"{value:z.{digits}f} {unit}"
 
 
 def working_table(states: Sequence[Mapping[str, Any]]) -> Table:

@@ -39,7 +39,7 @@ def within(value: float | None, error: float | None, unit: str, digits: int) -> 
     if value is None:
         return "none"
     if error is None or not math.isfinite(error):
-        return f"{round(value, digits) + 0.0:.{digits}f} {unit}"
+        return f"{value:z.{digits}f} {unit}"
     error = max(error, 10.0**-digits)
     first = math.floor(math.log10(error))
     place = min(digits, -first + (error < 2.0 * 10.0**first))

@@ -14,7 +14,7 @@ from coilset.model.runtime.processes import end_with_parent
 
 
 def main() -> None:
-    """`python -m coilset.model.sweep.worker`."""
+    """`python -m coilset.model.sweep.engines.worker`."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by the leading process
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")

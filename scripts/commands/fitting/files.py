@@ -12,20 +12,16 @@ if TYPE_CHECKING:  # commands load what they need
     from coilset.scripts.terminal.console import Console
 
 
-def folder_of(out: str | None, name: str) -> Path:
-    """The folder of a command's results: `out`, by default results/material/NAME."""
-    return results_folder(out, name, "material")
-
-
-def files_to_write(folder: Path, force: bool, *names: str) -> list[Path]:
-    """Files that a command will write, none of which is there unless forced: found before it computes or writes any.
+def files_to_write(out: str | None, name: str, force: bool, *files: str) -> list[Path]:
+    """Files that a command will write, in `out`, by default results/material/NAME: found before it computes any.
 
     Raises:
-        InputError: one is there.
+        InputError: one is there, and not to be overwritten.
     """
     from coilset.model.results.files.folder import refuse_to_replace
 
-    paths = [folder / name for name in names]
+    folder = results_folder(out, name, "material")
+    paths = [folder / file for file in files]
     refuse_to_replace(paths, force)
     return paths
 

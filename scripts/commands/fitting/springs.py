@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from click import Command, Context
 
 from coilset.model.base.errors import InputError
-from coilset.scripts.commands.fitting.files import files_to_write, folder_of, write_material, write_picture
+from coilset.scripts.commands.fitting.files import files_to_write, write_material, write_picture
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target
@@ -55,7 +55,7 @@ def fit_springs(
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
-    file, picture = files_to_write(folder_of(out, name), force, f"{name}.yaml", "fit.png")
+    file, picture = files_to_write(out, name, force, f"{name}.yaml", "fit.png")
     pressings = _read(data)
     console = Console()
     found = fit(pressings, law, _known(known), tester, Errors(force_error, travel_error))
