@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
@@ -504,16 +504,13 @@ class Case(Strict):
         return [name for name in PAST if getattr(self.spring, name) is not None]
 
 
-Group = TypeVar("Group", bound=Strict)
-
-
-def check(data: Any, file: str | Path = "", model: type[Group] = Case) -> Group:  # type: ignore[assignment]
-    """The checked Case (or other `model`) of raw data; paths in it count from the folder of `file`.
+def check(data: Any, file: str | Path = "") -> Case:
+    """The checked Case of raw data; paths in it count from the folder of `file`.
 
     Raises:
         InputError: one line with file, place, value and what would be right.
     """
-    return check_entries(data, model, file)
+    return check_entries(data, Case, file)
 
 
 def read_case_data(path: str | Path) -> dict[str, Any]:

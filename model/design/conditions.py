@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from coilset.model.base.errors import InputError
-from coilset.model.case.case import Case, check
+from coilset.model.case.case import check
 from coilset.model.design.file import Conditions, DesignFile, Limits
 from coilset.model.results.limits import case_limits
 from coilset.model.results.records.units import quantity, unit_of
@@ -143,7 +143,7 @@ def _refuse_tension(found: Iterable[Condition]) -> None:
 
 def _of_case(base: Mapping[str, Any], data: dict[str, Any], given: set[str | float]) -> Iterator[Condition]:
     """The limits of the case, of results on which the file has no condition of its own; `data` as of `_visit`."""
-    case: Case = check(copy.deepcopy(dict(base)))
+    case = check(copy.deepcopy(dict(base)))
     if not case.limits:
         return
     spring = case.spring.build()

@@ -217,7 +217,7 @@ def read_design_file(path: str | Path) -> Design:
             )
         base, folder = read_case_data(folder / spec.case), (folder / spec.case).parent
     base = copy.deepcopy({name: located(name, value, folder.absolute()) for name, value in base.items()})
-    case: Case = check(base, path if spec.case is None else folder / Path(spec.case).name)
+    case = check(base, path if spec.case is None else folder / Path(spec.case).name)
     with naming(path):
         spec.refuse_too_few(len(case.limits or ()))
     return Design(spec, base, path)

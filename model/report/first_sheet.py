@@ -12,7 +12,7 @@ from coilset.meshes.drawing import drawing
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.figures.panels.panel import with_unit
 from coilset.model.report.answer import answer, is_pulled, release_lengths
 from coilset.model.report.verdict import Check, checks, verdict
@@ -42,7 +42,7 @@ class FirstSheet:
 def first_sheet(run: Run) -> FirstSheet:
     """The sheet of a run."""
     try:
-        case: Case = check(run.case)
+        case = check(run.case)
         spring = case.spring.build()
     except InputError:  # a file of the case that has gone
         spring = None

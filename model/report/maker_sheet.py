@@ -3,7 +3,7 @@
 from typing import Any
 
 from coilset.model.base.errors import InputError
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
 from coilset.model.standards import from_results
@@ -14,7 +14,7 @@ from coilset.model.standards.rows import Row, sections
 def maker_sheet(run: Run) -> list[tuple[str, list[dict[str, Any]]]]:
     """Headings with their rows as texts; none of a spring that the standards have no formulas for."""
     try:
-        case: Case = check(run.case)
+        case = check(run.case)
         sheet = case_sheet(case, case.spring.build(), from_results.read(run.folder))
     except InputError:  # no cylinder, or a file of the case that has gone
         return []

@@ -54,7 +54,7 @@ def evaluate(
     reason, analysis = "", None
     record: dict[str, Any] = {"key": key, "status": "failed", "reason": "", "summary": {}, "steps": {}}
     try:
-        case: Case = check(data, file)
+        case = check(data, file)
         if model == "rod":
             analysis = Analysis(case, comm, detailed=False, estimates=estimates)
         else:

@@ -10,7 +10,7 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from coilset.model.base.entry import shown
+from coilset.model.base.entry import check_entries, shown
 from coilset.model.base.errors import InputError, naming
 from coilset.model.base.yaml import read_data
 from coilset.model.case import Case, check, read_case_data
@@ -53,7 +53,7 @@ class Plan:
     def __init__(self, path: str | Path, kept: Path | None = None, shard: Shard = WHOLE) -> None:
         self.path = Path(path)
         kind = "a sweep file holds the entries case: and vary:"
-        self.spec = check(read_data(path, kind), path, SweepSpec)
+        self.spec = check_entries(read_data(path, kind), SweepSpec, path)
         self.case_path = self.path.parent / self.spec.case
         self.base = read_case_data(self.case_path)
         self.names = list(self.spec.vary)

@@ -43,7 +43,7 @@ def after_results(folder: str | Path, at: str = "end") -> Analysis:
         InputError: there are no such results, the run is not complete, or the state has no meaning.
         SolveError: no equilibrium was found there.
     """
-    run: Case = check(open_run(folder).case, Path("case"))
+    run = check(open_run(folder).case, Path("case"))
     case = _gone_on(run, at)
     saved = _saved(Path(folder), case)
     analysis = Analysis(case, detailed=False, estimates=False)
@@ -80,7 +80,7 @@ def _gone_on(case: Case, at: str) -> Case:
     if case.steps_error is None:
         phase["steps"] = case.solver.control.steps.automatic
     data = case.model_dump(mode="json")
-    gone: Case = check(data | {"loading": [*data["loading"], phase]}, Path("case"))
+    gone = check(data | {"loading": [*data["loading"], phase]}, Path("case"))
     return gone
 
 

@@ -7,6 +7,7 @@ import pytest
 import yaml
 from mpi4py import MPI
 
+from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError
 from coilset.model.case.case import check
 from coilset.model.case.phases import Phase
@@ -69,7 +70,7 @@ def test_another_target_takes_time_too(warming):
     """Chosen in the middle of a run, without seconds: heat would stand still."""
     analysis = Analysis(check(CASE | {"material": warming}), MPI.COMM_SELF)
     with pytest.raises(InputError, match="takes no time, but heat flows"):
-        analysis.redirect(check({"to": {"travel": 5.0}, "steps": 1}, model=Phase))
+        analysis.redirect(check_entries({"to": {"travel": 5.0}, "steps": 1}, Phase))
     assert analysis.case.loading[0].to.travel == 45.0
 
 

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError
-from coilset.model.case import check
 from coilset.model.sweep.design import rows, unit_cube
 from coilset.model.sweep.figures.sensitivity import rank_correlation, sobol_indices
 from coilset.model.sweep.spec import Normal, SweepSpec
 
 
 def spec(**given):
-    return check({"case": "case.yaml", **given}, model=SweepSpec)
+    return check_entries({"case": "case.yaml", **given}, SweepSpec)
 
 
 def test_grid_has_every_combination_once():

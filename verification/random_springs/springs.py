@@ -12,7 +12,6 @@ from typing import Any, TypeVar
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
-from coilset.model.case.case import Case
 from coilset.model.case.targets import check_targets
 from coilset.model.material import library
 from coilset.model.standards.wires import names as wire_names
@@ -186,7 +185,7 @@ def _loading(draw: _Draw, spring: dict[str, Any]) -> list[dict[str, Any]]:
 def _is_valid(data: dict[str, Any]) -> bool:
     """Whether it passes the checks of a case before its run, and lies within the limits above."""
     try:
-        case: Case = check(data)
+        case = check(data)
         spring = case.spring.build()
         check_targets(case, spring, case_law(case, spring).G)
     except InputError:

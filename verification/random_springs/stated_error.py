@@ -18,7 +18,7 @@ import yaml
 from mpi4py import MPI
 
 from coilset.model.base.errors import CoilsetError
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards.wires.law import case_law
@@ -53,7 +53,7 @@ def numbers(count: int) -> list[int]:
 def spring(number: int, fine: bool = False) -> dict[str, Any]:
     """The case of a number with phases that end at the parts of its travel; `fine`: as a reference."""
     data = random_spring(number)
-    case: Case = check(data)
+    case = check(data)
     geometry = case.spring.build()
     loading: list[dict[str, Any]] = []
     for phase in data["loading"]:

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.results.limits import case_limits
 from coilset.model.results.records.record import Limit
 from coilset.model.results.records.units import quantity
@@ -88,7 +88,7 @@ def limits_of(data: xr.Dataset) -> tuple[Limit, ...]:
     base = json.loads(data.attrs.get("base", "{}"))
     if not base.get("limits"):
         return ()
-    case: Case = check(base)
+    case = check(base)
     spring = case.spring.build()
     return case_limits(case, spring, case_elastic(case, case_law(case, spring)).shear_modulus)
 

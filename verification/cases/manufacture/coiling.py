@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
-from coilset.model.case.case import Case, check
+from coilset.model.case.case import check
 from coilset.model.manufacture.coiling import coil
 from coilset.model.material import library
 from coilset.model.material.point.points import initial_state
@@ -66,7 +66,7 @@ def states() -> dict[str, tuple[Analysis, Snapshot]]:
     found: dict[str, tuple[Analysis, Snapshot]] = {}
     programs = {("as coiled", "coiled, preset"): PRESET, ("relieved", "relieved, preset"): RELIEF + PRESET}
     for words, loading in programs.items():
-        case: Case = check(
+        case = check(
             {
                 "spring": COILED,
                 "material": "creeping",

@@ -23,7 +23,7 @@ from mpi4py import MPI
 from scipy.integrate import quad
 
 from coilset.model.base.style import STYLE
-from coilset.model.case.case import Case, check
+from coilset.model.case.case import check
 from coilset.model.manufacture.peening import Layer, peen
 from coilset.model.material import library
 from coilset.model.material.point.points import initial_state
@@ -79,7 +79,7 @@ def run(study: Study) -> None:
 
 def states(past: dict, loading: list) -> tuple[Analysis, np.ndarray, np.ndarray]:
     """A spring after its load program, and the states of the middle section's points and of its surface."""
-    case: Case = check(
+    case = check(
         {
             "spring": PEENED | past,
             "material": "creeping",

@@ -22,7 +22,7 @@ from mpi4py import MPI
 
 from coilset.meshes.springs.placement import gauss_points
 from coilset.model.base.style import STYLE
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.results.records.record import Step
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
@@ -71,7 +71,7 @@ def squares(history: np.ndarray) -> np.ndarray:
 def cycle(ends: str, target: str | dict[str, float], steps: int) -> np.ndarray:
     """Rows of the Ledger, shape (steps done, 5)."""
     loading = [{"to": target, "steps": steps}, {"to": {"force": 0.0}, "steps": steps}]
-    case: Case = check({"spring": SPRING, "material": "ck15", "ends": ends, "loading": loading})
+    case = check({"spring": SPRING, "material": "ck15", "ends": ends, "loading": loading})
     ledger = Ledger(analysis := Analysis(case, MPI.COMM_SELF))
     analysis.run(ledger.keep)
     return np.array(ledger.rows)

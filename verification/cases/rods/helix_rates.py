@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.run.analysis import Analysis
 from coilset.verification.spring_references.curved_rod import clamped_rate
 from coilset.verification.study import Study
@@ -39,7 +39,7 @@ def rate(index: float, angle: float, kind: str) -> tuple[float, float, float]:
     }
     height = TURNS * spring["pitch"]
     loading = [{"to": {"travel": part * TRAVEL * height}, "steps": 1} for part in (1, 2)]
-    case: Case = check(
+    case = check(
         {
             "spring": spring,
             "material": "elastic",

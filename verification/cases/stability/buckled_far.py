@@ -21,7 +21,7 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import SolveError
 from coilset.model.base.style import STYLE
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
@@ -56,7 +56,7 @@ def press(turns: int, ends: str, travel: float, steps: int | str) -> End:
     spring = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": turns, "pitch": 12.0}
     mesh = {"elements_per_turn": 8, "section": {"kind": "plane", "radial": 2, "angular": 6}}
     loading = [{"to": {"travel": travel}, "steps": steps}]
-    case: Case = check({"spring": spring, "material": "elastic", "ends": ends, "mesh": mesh, "loading": loading})
+    case = check({"spring": spring, "material": "elastic", "ends": ends, "mesh": mesh, "loading": loading})
     analysis, force = Analysis(case, MPI.COMM_SELF), np.nan
     with suppress(SolveError):
         force = analysis.run().steps[-1].force_N

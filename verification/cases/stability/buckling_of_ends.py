@@ -18,7 +18,7 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import SolveError
 from coilset.model.base.style import STYLE
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.material import library
 from coilset.model.results.records.buckling import critical_travel
 from coilset.model.results.records.record import Step
@@ -37,7 +37,7 @@ def press(length: float, ends: str, travel: float) -> tuple[Step, ...]:
     """Steps of a run that must end stable."""
     spring = {"wire_diameter": WIRE, "mean_diameter": DIAMETER, "turns": length / PITCH, "pitch": PITCH}
     mesh = {"elements_per_turn": 16, "section": {"kind": "plane"}}
-    case: Case = check(
+    case = check(
         {
             "spring": spring,
             "material": "elastic",

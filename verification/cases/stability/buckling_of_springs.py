@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
-from coilset.model.case import Case, check
+from coilset.model.case import check
 from coilset.model.figures.panels.buckling import column, mode_axis, plane
 from coilset.model.material import library
 from coilset.model.results.records.record import Step
@@ -38,7 +38,7 @@ MESHES = (8, 16)
 def press(mesh: int) -> tuple[np.ndarray, float]:
     """Travel (mm), force (N), lowest eigenvalue, negative pivots after each step, shape (STEPS, 4), and `mode_off`."""
     spring = {"wire_diameter": WIRE, "mean_diameter": DIAMETER, "turns": TURNS, "pitch": PITCH}
-    case: Case = check(
+    case = check(
         {
             "spring": spring,
             "material": "elastic",

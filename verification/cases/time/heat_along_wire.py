@@ -27,7 +27,7 @@ from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
 from coilset.model.base.style import STYLE
-from coilset.model.case.case import Case, check
+from coilset.model.case.case import check
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
@@ -91,7 +91,7 @@ def material(study: Study, warms: bool) -> str:
 def preset(file: str, seconds: float | None = None, steps: int = STEPS, elements: int = 8, **heat: float) -> Analysis:
     """A spring that has been compressed and released, each in `seconds`."""
     loading = [{"to": {"travel": 45.0}, "steps": steps}, {"to": {"force": 0.0}, "steps": steps // 5}]
-    case: Case = check(
+    case = check(
         {
             "spring": {"wire_diameter": 2 * RADIUS, "mean_diameter": 40.0, "turns": 1.0, "pitch": 60.0},
             "ends": "clamped",

@@ -32,7 +32,7 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import SolveError
 from coilset.model.base.style import STYLE
-from coilset.model.case.case import Case, check
+from coilset.model.case.case import check
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.run.analysis import Analysis
 from coilset.model.section.kinds import KINDS
@@ -98,7 +98,7 @@ def spring(index: float, turns: float, file: str, preset: bool = False) -> tuple
             {"to": {"force": 0.0}, "steps": 1},
             {"to": {"force": force}, "steps": 1},
         ]
-    case: Case = check(
+    case = check(
         {
             "spring": {
                 "wire_diameter": WIRE,

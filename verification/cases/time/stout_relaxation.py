@@ -23,7 +23,7 @@ from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import round_wire
 from coilset.meshes.solid import SectionGrid, coil_section
 from coilset.model.base.style import STYLE
-from coilset.model.case.case import Case, check
+from coilset.model.case.case import check
 from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import polar
@@ -83,7 +83,7 @@ def rod(case: PressedSection, file: str, kind: str) -> Held:
     spring = {"wire_diameter": WIRE, "mean_diameter": case.mean_diameter, "turns": 1.0, "pitch": case.pitch}
     mesh = {"elements_per_turn": 24, "section": {"kind": kind, "radial": RADIAL, "angular": ANGULAR}}
     entries = {"spring": spring, "material": file, "ends": "clamped", "mesh": mesh, "loading": loading}
-    model: Case = check(entries)
+    model = check(entries)
     steps = Analysis(model, MPI.COMM_SELF).run().steps
     return Held(np.array([step.force_N for step in steps])[-len(HOURS) - 1 :])
 
