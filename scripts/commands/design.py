@@ -41,10 +41,8 @@ def design(design_file: str, out: str | None, force: bool, resume: bool, threads
     folder = results_folder(out, Path(design_file).stem)
     new = _prepare(folder, force, resume)
     try:
-        with naming(design_file), run_log(folder) as log:
+        with naming(design_file), run_log(folder, goes_on=resume):
             if not resume:
-                assert log.stream is not None  # it is opened in advance
-                log.stream.truncate(0)
                 clear(folder, output.FILES)
             with closing(Journal(folder / "evaluations.jsonl")) as journal:
                 _design(console, wanted, folder, journal, threads or usual(1))

@@ -66,7 +66,9 @@ def solve(
         if analysis.law.creep is not None:
             compile_first(stages=("creep",))
         on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
-        on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, force, resume))
+        on_first_rank(comm, lambda: stack.enter_context(run_log(folder, goes_on=resume)))
+        if not resume:  # pictures of `coilset mesh` may be of this spring; where results are replaced, they go
+            on_first_rank(comm, lambda: clear(folder, RESULTS + DRAWN if force else RESULTS))
         _solve(analysis, _Runs(output, case_file, folder, resume, interactive, interrupt), drawings)
 
 
@@ -76,17 +78,6 @@ def _prepare(folder: Path, case: Case, force: bool, resume: bool) -> None:
             raise InputError("continues a run, and --overwrite discards it; give one of the two", "--resume")
         Checkpoint(folder, case).require()
     prepare(folder, force or resume)
-
-
-def _begin(log: logging.FileHandler, out: Path, force: bool, resume: bool) -> None:
-    """Remove everything of an earlier run from the folder, except what is to be continued.
-
-    Pictures of `coilset mesh` may be of this spring, made before it is solved; where results are replaced, they go.
-    """
-    if not resume:
-        assert log.stream is not None  # it is opened in advance
-        log.stream.truncate(0)
-        clear(out, RESULTS + DRAWN if force else RESULTS)
 
 
 @dataclass

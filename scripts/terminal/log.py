@@ -23,8 +23,9 @@ class _Handler(logging.FileHandler):
 
 
 @contextlib.contextmanager
-def run_log(folder: Path) -> Iterator[logging.FileHandler]:
-    """Log to the folder's log.txt and hold a lock on it, which the kernel releases however the run ends.
+def run_log(folder: Path, goes_on: bool) -> Iterator[None]:
+    """Log to the folder's log.txt, at its end if the run `goes_on`, and hold a lock on it, which the kernel releases
+    however the run ends.
 
     Raises:
         InputError: if another run uses the folder.
@@ -39,10 +40,12 @@ def run_log(folder: Path) -> Iterator[logging.FileHandler]:
     try:
         assert handler.stream is not None  # it is opened in advance
         _lock(handler.stream.fileno(), folder)
+        if not goes_on:
+            handler.stream.truncate(0)
         handler.setFormatter(logging.Formatter("%(asctime)s %(message)s"))
         logger.setLevel(logging.INFO)
         logger.addHandler(handler)
-        yield handler
+        yield
     finally:
         logger.removeHandler(handler)
         handler.close()

@@ -311,7 +311,7 @@ def test_a_forced_run_leaves_nothing_of_the_old_one(example, folder, monkeypatch
 
 def test_one_run_at_a_time_works_in_a_folder(example, folder):
     (folder / "log.txt").write_text("of the other\n")
-    with run_log(folder), pytest.raises(InputError, match="another run"):
+    with run_log(folder, goes_on=True), pytest.raises(InputError, match="another run"):
         solve(example, folder, True, SMALL, comm=COMM)
     assert (folder / "log.txt").read_text() == "of the other\n"
     resume(example, folder)
