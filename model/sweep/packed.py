@@ -1,8 +1,7 @@
 """Inputs and keys of very many cases in little memory: a number takes 8 bytes, a key 25, no Python object."""
 
-from abc import abstractmethod
-from collections.abc import Iterable, Sequence
-from typing import Any, TypeVar, overload
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,31 +9,9 @@ from coilset.model.sweep.keys import KEY_LENGTH
 from coilset.model.sweep.spec import are_numbers
 
 Row = tuple[Any, ...]  # the inputs of a case
-Item = TypeVar("Item", covariant=True)
 
 
-class MadeWhenRead(Sequence[Item]):
-    """A sequence whose items are made each time they are read; slices are lists of them."""
-
-    @abstractmethod
-    def item(self, at: int) -> Item:
-        """The item at a place from 0 to less than the length."""
-
-    @overload
-    def __getitem__(self, at: int) -> Item: ...
-
-    @overload
-    def __getitem__(self, at: slice) -> list[Item]: ...
-
-    def __getitem__(self, at: int | slice) -> Item | list[Item]:
-        if isinstance(at, slice):
-            return [self.item(k) for k in range(*at.indices(len(self)))]
-        if not -len(self) <= at < len(self):
-            raise IndexError(at)
-        return self.item(int(at) % len(self))
-
-
-class Rows(MadeWhenRead[Row]):
+class Rows:
     """Rows of a table, kept by columns.
 
     Args:
@@ -66,14 +43,16 @@ class Rows(MadeWhenRead[Row]):
     def __len__(self) -> int:
         return self._length + len(self.added)
 
-    def item(self, at: int) -> Row:
-        """A row."""
+    def __iter__(self) -> Iterator[Row]:
+        return map(self.__getitem__, range(len(self)))
+
+    def __getitem__(self, at: int) -> Row:
         if at >= self._length:
             return self.added[at - self._length]
         return tuple(column[at].item() if isinstance(column, np.ndarray) else column[at] for column in self.columns)
 
 
-class Strings(MadeWhenRead[str]):
+class Strings:
     """Keys of cases.
 
     Args:
@@ -92,8 +71,10 @@ class Strings(MadeWhenRead[str]):
     def __len__(self) -> int:
         return len(self.array)
 
-    def item(self, at: int) -> str:
-        """A key."""
+    def __iter__(self) -> Iterator[str]:
+        return map(self.__getitem__, range(len(self)))
+
+    def __getitem__(self, at: int) -> str:
         key: bytes = self.array[at]
         return key.decode()
 

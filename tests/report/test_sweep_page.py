@@ -46,7 +46,7 @@ def folder(plan):
     out = plan.path.parent / "out"
     out.mkdir()
     with closing(Journal(out / "journal.jsonl")) as journal:
-        for number, (row, key) in enumerate(zip(plan.rows[:5], plan.keys, strict=False)):
+        for number, (row, key) in enumerate(zip(list(plan.rows)[:5], plan.keys, strict=False)):
             record = (
                 evaluate(**plan.task(row, key), comm=MPI.COMM_SELF)
                 if number < 3

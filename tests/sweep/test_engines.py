@@ -156,7 +156,7 @@ def test_a_scheduler_that_does_not_answer_is_named(monkeypatch):
 def test_a_study_goes_on_where_it_was(plan, tmp_path):
     study = Study(plan.path, tmp_path / "study")
     trials = study.ask(3)
-    assert [trial.inputs["spring.pitch"] for trial in trials] == [row[1] for row in plan.rows[:3]]
+    assert [trial.inputs["spring.pitch"] for trial in trials] == [row[1] for row in plan.rows][:3]
     found = study.evaluate(trials[:2], jobs=1)
     study.tell(trials[2].key, None, "broke")
     (given,) = study.ask(values=[{"spring.wire_diameter": 5.0, "spring.pitch": 12.5}])

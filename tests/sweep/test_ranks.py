@@ -122,7 +122,7 @@ def test_two_ranks_share_a_case(write_sweep, tmp_path):
     if COMM.rank == 0:
         records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
         assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed"]
-        for row, key in zip(plan.rows[:2], plan.keys[:2], strict=True):
+        for row, key in list(zip(plan.rows, plan.keys, strict=True))[:2]:
             alone = evaluate(**plan.task(row, key), comm=MPI.COMM_SELF)
             for name in ("set_mm", "force_max_N"):  # the case's own tolerance of 1e-7 bounds the agreement
                 assert records[key]["summary"][name] == pytest.approx(alone["summary"][name], rel=1e-7)

@@ -3,9 +3,8 @@
 import json
 import subprocess
 import sys
-import threading
 from collections.abc import Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
@@ -107,20 +106,16 @@ class Workers:
     @contextmanager
     def pool(self, log: Path) -> Iterator[Pool]:
         """Pool of these processes, whose output goes to the end of a file; once."""
-        own, free = threading.local(), list(self._processes)
-
-        def begin() -> None:
-            own.process = free.pop()
-
-        executor = ThreadPoolExecutor(self.jobs, initializer=begin)
+        free, executor = list(self._processes), ThreadPoolExecutor(self.jobs)
 
         def run(tasks: list[Task]) -> list[Record]:
-            return own.process.run(tasks, str(log))
-
-        def submit(tasks: list[Task]) -> Future[list[Record]]:
-            return executor.submit(run, tasks)
+            process = free.pop()  # there are as many as threads
+            try:
+                return process.run(tasks, str(log))
+            finally:
+                free.append(process)
 
         try:
-            yield Pool(submit, self.jobs)
+            yield Pool(lambda tasks: executor.submit(run, tasks), self.jobs)
         finally:
             executor.shutdown(wait=False, cancel_futures=True)
