@@ -1,6 +1,7 @@
 """The page of a design: what to wind, how well it meets the conditions, and what else could be had."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,9 +9,8 @@ import numpy as np
 
 from coilset.model.base.errors import InputError, reading
 from coilset.model.case.names import EntryName, entry_name
-from coilset.model.design.conditions import GROUP, SENSES
+from coilset.model.design.conditions import GROUP, LIMITS, SENSES, Condition
 from coilset.model.design.opened import FILE, read_design
-from coilset.model.design.output import LIMITS
 from coilset.model.figures.panels.characteristic import characteristic
 from coilset.model.figures.panels.panel import Panel, axis, curve
 from coilset.model.figures.panels.spring_view import spring_view
@@ -51,6 +51,7 @@ def write_design_report(folder: str | Path) -> Path:
         Number(name.words, f"{plain(value, 6)} {name.unit}".strip())
         for name, value in zip(names, design["found"].values(), strict=True)
     ]
+    targets = " and ".join(f"{one['words']} {_of_file(one).wanted}" for one in design["conditions"])
     run = found_run(folder, design)
     drawn = [] if run is None else [("The spring that was found", [characteristic(run), spring_view(run)])]
     return write_page(
@@ -59,7 +60,7 @@ def write_design_report(folder: str | Path) -> Path:
         [*drawn, ("The search", [search(design, records)])],
         {},
         title=f"{folder.resolve().name}: {', '.join(f'{one.term} {one.value}' for one in found)}",
-        subtitle=f"{', '.join(name.words for name in names)} for {_targets(design)}",
+        subtitle=f"{', '.join(name.words for name in names)} for {targets}",
         design=design,
         found=found,
         is_drawn=run is not None,
@@ -90,7 +91,7 @@ def search(design: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> P
     numbers = np.arange(1, len(records) + 1)
     traces = []
     for place, one in enumerate(design["conditions"]):
-        off = [_off(record["values"][place : place + 1], one) for record in records]
+        off = [_off(record["values"][place : place + 1], _of_file(one)) for record in records]
         traces.append(curve(numbers, np.array(off), place, marker=7, name=_named(one)))
     ended = "met all conditions" if design["met"] else "came as near as the bounds allow"
     finding = f"The search {ended} after {design['evaluations']} evaluations"
@@ -106,40 +107,31 @@ def search(design: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> P
     )
 
 
-def _sense(condition: Mapping[str, Any]) -> int:
-    return LIMITS.get(condition["kind"], 0)
+def _of_file(one: Mapping[str, Any]) -> Condition:
+    return Condition(one["name"], one["target"], one["height_mm"], sense=LIMITS.get(one["kind"], 0))
 
 
-def _off(values: list[float | None], condition: Mapping[str, Any]) -> float:
+def _off(values: list[float | None], condition: Condition) -> float:
     """The relative deviation by which a condition is missed; NaN of a run that failed."""
     if not values or values[0] is None:
         return float("nan")
-    off, sense = (values[0] - condition["target"]) / abs(condition["target"]), _sense(condition)
-    return max(abs(off) if not sense or sense * off > 0.0 else 0.0, LEAST_OFF)
+    return max(abs(condition.missed(condition.off(values[0]))), LEAST_OFF)
 
 
-def _named(condition: Mapping[str, Any]) -> str:
+def _named(one: Mapping[str, Any]) -> str:
     """The result, and the limit if there is one."""
-    return f"{condition['words']}, {SENSES[_sense(condition)]}".rstrip(", ")
-
-
-def _wanted(condition: Mapping[str, Any], target: float) -> str:
-    return f"{SENSES[_sense(condition)]}{target:.6g} {condition['unit']}"
-
-
-def _targets(design: Mapping[str, Any]) -> str:
-    return " and ".join(f"{one['words']} {_wanted(one, one['target'])}" for one in design["conditions"])
+    return f"{one['words']}, {SENSES[_of_file(one).sense]}".rstrip(", ")
 
 
 def _condition(one: Mapping[str, Any]) -> dict[str, Any]:
-    inside = one["met"] and not one["active"]
+    wanted, inside = _of_file(one), one["met"] and not one["active"]
     off = _percent(one["residual"]) if one["target"] else f"{plain(abs(one['value']), 2)} {one['unit']}"
     return {
         "words": one["words"],
-        "target": _wanted(one, one["target"]),
+        "target": wanted.wanted,
         "value": f"{plain(one['value'], 7)} {one['unit']}",
         "off": off + (" inside the limit" if inside else ""),
-        "met": "yes, not active" if inside else ("yes" if one["met"] else "no") + (", active" if _sense(one) else ""),
+        "met": "yes, not active" if inside else ("yes" if one["met"] else "no") + (", active" if wanted.sense else ""),
     }
 
 
@@ -196,7 +188,7 @@ def _other(row: Mapping[str, Any], design: Mapping[str, Any]) -> str:
     """What differs: a condition with another target, or an entry of the case with another value."""
     if row["of"].startswith(GROUP):
         one = next(one for one in design["conditions"] if one["name"] == row["of"])
-        return f"{one['words']} {_wanted(one, row['value'])}"
+        return f"{one['words']} {replace(_of_file(one), target=row['value']).wanted}"
     name = entry_name(row["of"], design["origin"]["case"])
     value = plain(row["value"], 6) if isinstance(row["value"], float) else str(row["value"])
     return f"{name.words} {value} {name.unit}".strip()

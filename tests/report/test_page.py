@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from coilset.model.base.errors import InputError
+from coilset.model.design.conditions import SIZE_OF_ZERO
 from coilset.model.figures.panels.characteristic import NAMED, characteristic
 from coilset.model.figures.panels.material_curves import material_curve
 from coilset.model.figures.panels.phases import phases
@@ -264,3 +265,11 @@ def test_a_design_shows_what_it_found_even_of_a_finer_run(tmp_path, folder):
     assert design_page.found_run(tmp_path, {"origin": {"case": coarser}}) is not None
     other = case | {"spring": case["spring"] | {"turns": 3.5}}
     assert design_page.found_run(tmp_path, {"origin": {"case": other}}) is None
+
+
+def test_a_design_shows_how_far_zero_was_missed():
+    """Relative to no target, but to a size of its own."""
+    condition = {"name": "such_that.set_mm", "words": "set", "unit": "mm", "kind": "equals", "target": 0.0}
+    design = {"conditions": [condition | {"height_mm": None}], "met": False, "evaluations": 2}
+    panel = design_page.search(design, [{"values": [0.5]}, {"values": [None]}])
+    np.testing.assert_array_equal(panel.traces[0]["y"], [0.5 / SIZE_OF_ZERO, np.nan])
