@@ -51,21 +51,6 @@ class Options:
     pictures: bool = True
     height: float | None = None
 
-    @property
-    def files(self) -> list[Path]:
-        """Files of the sheet."""
-        return [Path(one) for one in self.out if Path(one).suffix.lower() in SHEETS]
-
-    def folder(self, name: str) -> Path:
-        """Folder of the Goodman diagram."""
-        folders = [one for one in self.out if Path(one) not in self.files]
-        return results_folder(folders[-1] if folders else None, name)
-
-    @property
-    def draws(self) -> bool:
-        """Whether the diagram is drawn: not if there are files alone."""
-        return self.pictures and (not self.files or len(self.files) < len(self.out))
-
 
 def sheet(case_file: str | Path | None, options: Options) -> None:
     """Print the sheet of a spring, write it to files, or draw its Goodman diagram; see `coilset sheet --help`.
@@ -75,20 +60,22 @@ def sheet(case_file: str | Path | None, options: Options) -> None:
     """
     if MPI.COMM_WORLD.rank:
         return  # too little work to be worth distributing
-    surface, files = options.surface, options.files
+    surface = options.surface
     if surface not in get_args(Surface):
         raise InputError(f"'{surface}' is no surface; give {' or '.join(get_args(Surface))}", "--surface")
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
     case = read_case(case_file, options.settings)
-    folder = options.folder(Path(case_file).stem)
+    files = [Path(one) for one in options.out if Path(one).suffix.lower() in SHEETS]
+    folders = [one for one in options.out if Path(one) not in files]
+    folder = results_folder(folders[-1] if folders else None, Path(case_file).stem)
     run = from_results.read(options.results) if options.results else None
     with naming(case_file):
         spring = case.spring.build()
         grade = GRADES[options.grade]
         made = case_sheet(case, spring, run, options.wire, options.lengths, grade, surface, options.dynamic)
     body = None if options.height is None else _pressed(spring, options.height, files)
-    diagram = _diagram(made) if options.draws else None
+    diagram = _diagram(made) if options.pictures and (folders or not files) else None
     refuse_to_replace([*files, *([folder / FIGURE] if diagram is not None else [])], options.force)
     console = Console()
     warnings = _print(console, case, spring, made, options.results)
