@@ -7,7 +7,6 @@ from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.material.point.points import initial_state, update
 from coilset.model.standards.wires import wire
-from coilset.model.standards.wires.hardening import curve
 from coilset.model.standards.wires.law import case_law, wire_law
 from coilset.model.sweep.keys import Keys
 
@@ -54,11 +53,6 @@ def test_law_is_marked_as_an_estimate():
 
 def test_stronger_wire_yields_later():
     assert wire_law("EN 10270-1 SH", 1.0).yield_stress > wire_law("EN 10270-1 SH", 5.0).yield_stress
-
-
-def test_curve_needs_ascending_numbers():
-    with pytest.raises(ValueError, match="must ascend"):
-        curve(900.0, 800.0, 1000.0, 206e3, 0.3)
 
 
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0, "end_coils": "closed"}

@@ -4,7 +4,6 @@ import os
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from coilset.model.base.entry import check_entries, shortened
 from coilset.model.base.errors import InputError
@@ -38,8 +37,9 @@ def files() -> dict[str, WireFile]:
 
 
 @cache
-def _wires() -> dict[str, tuple[Any, Any]]:
-    return {f"{standard} {entry.grade}": (file, entry) for standard, file in files().items() for entry in file.wires}
+def _wires() -> dict[str, Wire]:
+    known = [(f"{file.standard} {entry.grade}", file, entry) for file in files().values() for entry in file.wires]
+    return {name: Wire(name, file.standard, entry, file.sources) for name, file, entry in known}
 
 
 def names() -> list[str]:
@@ -59,9 +59,7 @@ def wire(name: str) -> Wire:
         near = [by_key[key] for key in parts or get_close_matches(_key(name), by_key, 1, 0.7)]
         known = f"is {' or '.join(near)} meant?" if 0 < len(near) <= MANY else "`coilset sheet --wires` lists them"
         raise InputError(f"'{shortened(name)}' is not a known wire; {known}", "material.wire")
-    name = by_key[_key(name)]
-    file, entry = _wires()[name]
-    return Wire(name, file.standard, entry, file.sources)
+    return _wires()[by_key[_key(name)]]
 
 
 def _key(name: object) -> str:
