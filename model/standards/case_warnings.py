@@ -13,12 +13,12 @@ from coilset.model.material.law.own import OwnLaw
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.sheet import Sheet, pulls, working_lengths
-from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.spring_warnings import spring_warnings
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic
 from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE
-from coilset.model.standards.working import endurance_warnings, gap_warnings, stress_warnings
+from coilset.model.standards.working_warnings import endurance_warnings, gap_warnings, stress_warnings
 
 
 def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:

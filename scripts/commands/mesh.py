@@ -10,8 +10,8 @@ from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError, naming
 from coilset.model.case import read_case
 from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
-from coilset.model.standards.data import spring_data
-from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.spring_data import spring_data
+from coilset.model.standards.spring_warnings import spring_warnings
 from coilset.model.standards.wires.law import case_elastic, case_law
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder

@@ -22,12 +22,12 @@ from coilset.model.standards.case_warnings import sheet_warnings
 from coilset.model.standards.en15800 import GRADES
 from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet
-from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.spring_warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.library import files, own_folder
 from coilset.model.standards.wires.wire_file import Surface
 from coilset.model.standards.wires.words import WIRE_COLUMNS, described, table_row
-from coilset.model.standards.working import presetting_warning
+from coilset.model.standards.working_warnings import presetting_warning
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import SHEETS, results_folder
 

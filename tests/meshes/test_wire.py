@@ -6,7 +6,7 @@ import pytest
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.data import spring_data
+from coilset.model.standards.spring_data import spring_data
 
 OVAL = {"oval": {"width": 4.0, "height": 5.0}}
 RECTANGLE = {"rectangle": {"width": 6.0, "height": 3.0, "corner": 0.5}}

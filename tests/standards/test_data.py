@@ -5,8 +5,8 @@ import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.standards.buckling import buckling_travel
-from coilset.model.standards.data import spring_data
 from coilset.model.standards.rate import torsion_rate
+from coilset.model.standards.spring_data import spring_data
 from coilset.model.standards.wires.steel import STEEL
 
 G = 81500.0

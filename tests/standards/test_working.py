@@ -14,7 +14,7 @@ from coilset.model.standards.from_results import Found
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.steel import STEEL, Elastic
-from coilset.model.standards.working import gap_warnings, presetting_warning, stress_warnings
+from coilset.model.standards.working_warnings import gap_warnings, presetting_warning, stress_warnings
 
 SPEC = {
     "wire_diameter": 4.0,

@@ -14,7 +14,7 @@ from coilset.model.results.records.units import unit_of
 from coilset.model.results.records.working import working_warnings
 from coilset.model.results.stresses import shear_inside
 from coilset.model.section import surface
-from coilset.model.standards.working import presetting_warning
+from coilset.model.standards.working_warnings import presetting_warning
 
 SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted sideways by 0.71 of their diameter
 # Change of the force over that of the travel, both in per cent, from which a spring counts as standing on a wall: a

@@ -1,4 +1,4 @@
-"""Warnings of a spring maker about working lengths and presetting; see `warnings` for the spring."""
+"""Warnings of a spring maker about working lengths and presetting; see `spring_warnings` for the spring."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
