@@ -213,7 +213,11 @@ def _compared(table: Columns, row: dict[str, str], line: int, run: _Run) -> Comp
     travel = given("travel_mm") if quantity == FORCE else float("nan")
     if quantity == FORCE:
         phase = given("phase", 1.0)
-        computed, name = run.force_at(travel, int(phase) - 1), f"{FORCE} at {travel:g} mm, phase {phase:g}"
+        try:
+            computed, name = run.force_at(travel, int(phase) - 1), f"{FORCE} at {travel:g} mm, phase {phase:g}"
+        except InputError:
+            problem = f"{travel:g} mm are not reached in phase {phase:g} of the load program, the first being 1"
+            raise InputError(problem, f"line {line}, column travel_mm", table.path) from None
     elif quantity in STRESSES:
         turn, angle = given("turn"), given("angle", 0.0)
         seen = coilset.open(run.folder).xray(turn, angle, given("spot", 0.0))  # type: ignore[operator]

@@ -51,8 +51,8 @@ def place_at(data: xr.Dataset, travel: float, phase: int | None = None) -> Place
         x, y, error = (values[rows[0] - 1 : rows[-1] + 1] for values in columns)
         if x.min() <= travel <= x.max():
             return _on_phase(x, y, error, travel)
-    where = "in no phase" if phase is None else f"not in phase {phase}"
-    raise InputError(f"{travel:g} mm is reached {where} of the load program", "travel")
+    where = "in no phase of the load program" if phase is None else f"not in loading.{phase}"
+    raise InputError(f"{travel:g} mm is reached {where}", "travel")
 
 
 def _on_phase(x: np.ndarray, y: np.ndarray, error: np.ndarray, travel: float) -> Place:

@@ -44,17 +44,20 @@ def stress_along_wire(run: Run) -> Panel:
 
 
 def moments_along_wire(run: Run) -> Panel:
-    """Torque and bending moments of the sections over the turns, one snapshot at a time."""
-    turns, traces = section_turns(run).ravel(), []
-    bent = run.is_turned
-    loading = run.data["resultants"].sel(resultant=["M2", "M3"] if bent else ["Mt"])
+    """Torque and bending moments in the middle of the elements over the turns, one snapshot at a time.
+
+    Within an element, which is straight, moments vary about those of the curved wire.
+    """
+    turns, traces = section_turns(run).mean(axis=-1), []
+    bent, resultants = run.is_turned, run.data["resultants"].mean("gauss")
+    loading = resultants.sel(resultant=["M2", "M3"] if bent else ["Mt"])
     moments = np.linalg.norm(loading.transpose("resultant", ...).values, axis=0)
     moment = moments.reshape(len(run.snapshots), -1).max(axis=1)
     most = int(moment.argmax())
     order = [*(number for number in range(len(run.snapshots)) if number != most), most]  # the last is shown first
     for choice, number in enumerate(order):
         for place, (key, name) in enumerate(SHOWN.items()):
-            values = run.data["resultants"].sel(resultant=key).values[number].ravel()
+            values = resultants.sel(resultant=key).values[number]
             traces.append(curve(turns, values, place, dash="solid", name=name, meta={"choice": choice}))
     kind = "bending moment" if bent else "torque"
     finding = f"The wire carries up to {plain(moment[most])} N mm of {kind}, at {run.snapshots[most]}"
