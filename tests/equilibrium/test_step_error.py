@@ -78,9 +78,9 @@ def test_equal_steps_estimate_their_error(example, ends, to):
     set_error = fine.steps[-1].travel_mm - coarse.steps[-1].travel_mm
     own = told["estimated_errors"]["steps"]
     assert 1 / 3 < own["set_mm"] / abs(set_error) < (3 if ends == "clamped" else 5)
-    names = [warning["name"] for warning in told["warnings"]]
+    names = {warning["name"] for warning in told["warnings"]}
     worst = max(own["force_N"] / told["force_max_N"], own["set_mm"] / told["set_mm"])
-    assert ("step error" in names) == (worst > 0.002)
+    assert worst <= 0.002 or names & {"error", "step error"}
 
 
 LINEAR = {"strain: 2.0e-4": "strain: 2.0e-6", "exponent: 6": "exponent: 4", "time_exponent: 0.2": "time_exponent: 1"}

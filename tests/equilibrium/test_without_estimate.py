@@ -46,7 +46,7 @@ def test_equal_steps_find_the_same_to_the_last_bit(example):
     estimates = {name for name in summary if name.startswith("estimated_")}
     assert changed == estimates | {"warnings"}
     assert {summary[name] for name in estimates} == {None}
-    assert {one["name"] for one in told["warnings"]} - {one["name"] for one in summary["warnings"]} == {"step error"}
+    assert {one["name"] for one in told["warnings"]} - {one["name"] for one in summary["warnings"]} == {"error"}
     assert next(one.remark for one in answer(summary) if one.term == "maximum force").endswith("not estimated")
 
 

@@ -56,7 +56,7 @@ def check_law(update: Callable[..., bool], parameters: np.ndarray, width: int) -
     zero, nothing = np.zeros(3), np.zeros(width)
     try:
         C = at(zero, nothing, 1e-9 * np.ones(3))[2]
-    except NumbaError as error:
+    except (NumbaError, TypeError) as error:  # the latter of another number of arguments
         raise _wrong(f"numba cannot compile it: {str(error).strip().splitlines()[0]}") from None
     if not (C[0, 0] > 0.0 and C[1, 1] > 0.0):
         raise _wrong(f"is not stiff where nothing is strained: ∂σ11/∂ε11 = {C[0, 0]:g}, ∂τ12/∂γ12 = {C[1, 1]:g}")

@@ -279,9 +279,9 @@ def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
 
 
 def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
-    """The numbers whose error by all causes is above the required accuracy, unless the steps alone are."""
+    """The numbers whose error by all causes is above the required accuracy."""
     required, errors = setup.limits.accuracy, result.errors
-    if required is None or errors is None or any(_step_error(setup, result)):
+    if required is None or errors is None:
         return
     worst, words = dict[str, float](), list[str]()
     for name, allowed in allowed_errors(setup, result).items():
@@ -305,6 +305,13 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
             f"case's accuracy of {100 * required:.2g} % allows; {MORE[cause]}"
         )
         yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], required)
+
+
+def _errors(setup: Setup, result: Result) -> Iterator[Warning]:
+    """The errors by all causes with the largest one; those by the steps where others are not known."""
+    by_steps, whole = list(_step_error(setup, result)), list(_whole_error(setup, result))
+    known = {"step error"}.issuperset(one.name for one in by_steps) and any(one.name == "error" for one in whole)
+    yield from whole if known or not by_steps else by_steps
 
 
 def _longer(setup: Setup, result: Result) -> Iterator[Warning]:
@@ -339,8 +346,7 @@ SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetrati
 FOUND: tuple[Check, ...] = (
     _strength,
     _creep,
-    _step_error,
-    _whole_error,
+    _errors,
     _presetting,
     _longer,
     working_warnings,
