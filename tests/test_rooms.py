@@ -65,8 +65,6 @@ def test_meshes_import_only_the_base_of_the_model():
 MOST_FILES, MOST_PARAMETERS = 14, 10
 # What is larger still, with its number: it may become smaller, and nothing may be added.
 PARAMETERS = {
-    "model/material/point/back_stresses.py": 1,
-    "model/material/point/rod_plastic.py": 1,
     "model/rod/forms.py": 1,
     "model/section/condensation.py": 1,
     "model/section/fibres.py": 2,

@@ -1,5 +1,6 @@
 """Several back stresses (Chaboche) against closed curves of tension and the rate equations in 3 × 3 tensors."""
 
+import copy
 import math
 
 import numpy as np
@@ -158,37 +159,39 @@ def test_turned_frame():
     assert moved[12] == pytest.approx(still[12], rel=1e-9)
 
 
-@pytest.mark.parametrize("terms", [1, 3])
-def test_both_ways_through_a_rods_point(tmp_path, terms):
-    """In closed form but for one unknown a stage, and by the general iteration: the same state, count of flow, tangent.
+@pytest.mark.parametrize(("components", "terms", "warm"), [(3, 1, False), (3, 3, True), (6, 3, False), (6, 2, True)])
+def test_both_ways_through_a_point(tmp_path, components, terms, warm):
+    """By one unknown a stage, many at once, and by the general iteration: the same state, count of flow, tangent.
 
     From states that flow, unload and flow back; a few increments that leave the surface for a moment have one way only.
+    Warm points have constants between those of two temperatures. Tangents differ by the last correction, of 1e-6.
     """
     data = yaml.safe_load((library.FOLDER / "chaboche.yaml").read_text(encoding="utf-8"))
     del data["temperatures"][0]["kinematic"]["terms"][terms:]
+    if warm:
+        data["temperatures"].append(copy.deepcopy(data["temperatures"][0]) | {"temperature": 400.0})
+        data["temperatures"][1]["elasticity"]["G"] *= 0.9
+        data["temperatures"][1]["kinematic"]["terms"][0]["C"] *= 0.8
     written = tmp_path / "law.yaml"
     written.write_text(yaml.safe_dump(data), encoding="utf-8")
     law = library.load(written)
-    rng, parts, flowed, both, number = np.random.default_rng(5), law.parts(), 0, 0, 120
-    state = np.zeros(law.columns(3))
-    for i in range(number):
-        size = 10.0 ** rng.uniform(-5, -1.7)
-        de, found = size * rng.normal(size=3) * (-1.0 if i % 3 == 0 else 1.0), []
-        for way in (back_stresses.flow_of_rod, increment.advance):
-            new, C = np.full_like(state, np.nan), np.empty((3, 3))
-            count = way(parts, state, de if way is increment.advance else tuple(de), new, C)
-            found.append((count, new, C))
-        (quick, new, C), (count, other, D) = found
-        assert count >= 0
-        state = other
-        flowed += count > 0
-        if quick < 0:
-            continue
-        both += count > 0
-        assert (quick > 0) == (count > 0)
-        np.testing.assert_allclose(new, other, rtol=1e-9, atol=1e-8)
-        np.testing.assert_allclose(C, D, atol=1e-8 * law.E)
-    assert 0.5 * number < flowed < 0.95 * number
+    n, many, form = components, 40, back_stresses.ROD if components == 3 else back_stresses.SOLID
+    rng, parts = np.random.default_rng(5), law.parts(law.parameters(350.0 if warm else None))
+    state = np.zeros((many, law.columns(n)))
+    other, D, flowed, both = np.empty_like(state), np.empty((many, n, n)), 0, 0
+    for i in range(6):
+        size = 10.0 ** rng.uniform(-5, -1.7, size=(many, 1))
+        de = size * rng.normal(size=(many, n)) * (-1.0 if i % 3 == 2 else 1.0)
+        new, rows, quick = np.empty_like(state), np.empty((n * n, many)), np.empty(many, np.int64)
+        back_stresses.flow_points(parts, form, state, de.T.copy(), new, rows, quick)
+        each = [increment.advance(parts, state[k], de[k], other[k], D[k]) for k in range(many)]
+        count, at_once = np.array(each), quick >= 0
+        assert (count >= 0).all()
+        assert ((quick > 0) == (count > 0))[at_once].all()
+        np.testing.assert_allclose(new[at_once], other[at_once], rtol=1e-9, atol=1e-8)
+        np.testing.assert_allclose(rows.T.reshape(-1, n, n)[at_once], D[at_once], atol=1e-6 * law.E)
+        flowed, both, state = flowed + (count > 0).sum(), both + (quick > 0).sum(), other.copy()
+    assert 0.3 * 6 * many < flowed < 0.95 * 6 * many
     assert both > 0.95 * flowed
 
 

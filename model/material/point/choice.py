@@ -17,7 +17,7 @@ from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.functions import SPIN
 from coilset.model.material.law.parts import OwnPoints, Parts
 from coilset.model.material.point import rod, solid
-from coilset.model.material.point.back_stresses import applies, flow_of_rod
+from coilset.model.material.point.back_stresses import ROD, SOLID, applies, flow_points
 from coilset.model.material.point.increment import advance
 from coilset.model.runtime.kernels import KERNEL, njit
 
@@ -51,7 +51,7 @@ def _rod_points(
         )
     if law.instance_class is OwnPoints:
         return lambda law, old, de, new, tangent, with_tangent, count: own_points(law, old, de, new, tangent, count)
-    return lambda law, old, de, new, tangent, with_tangent, count: one_by_one(law, old, de, new, tangent, count)
+    return lambda law, old, de, new, tangent, with_tangent, count: parts_points(law, old, de, new, tangent, count)
 
 
 @njit(**KERNEL)
@@ -64,12 +64,17 @@ def own_points(
 
 
 @njit(**KERNEL)
-def one_by_one(
+def parts_points(
     law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
 ) -> bool:
-    """One increment at many points, one after the other."""
+    """One increment at many points: of those whose back stresses saturate several at a time, else one by one."""
+    together = applies(law)
+    if together and flow_points(law, ROD, old, de, new, tangent, count):
+        return True
     good, c = True, np.empty((3, 3))
     for k in range(old.shape[0]):
+        if together and count[k] >= 0:
+            continue
         count[k] = rod_map(law, old[k], de[0, k], de[1, k], de[2, k], new[k], c)
         good = good and count[k] >= 0
         for i in range(3):
@@ -80,12 +85,10 @@ def one_by_one(
 
 @njit(**KERNEL)
 def rod_map(law: Parts, old: np.ndarray, e11: float, g12: float, g13: float, new: np.ndarray, C: np.ndarray) -> int:
-    """`increment.advance` of a rod's point, in closed form where there is one."""
+    """`increment.advance` of a rod's point, in closed form where it only creeps."""
     count = -1
     if law.viscous[TIME] > 0.0 and law.plastic[SPIN] == 0.0:
         count = without_yield(law, old, (e11, g12, g13), new, C)
-    elif applies(law):
-        count = flow_of_rod(law, old, (e11, g12, g13), new, C)
     return count if count >= 0 else advance(law, old, np.array([e11, g12, g13]), new, C)
 
 
@@ -115,16 +118,29 @@ def advance_solids(
 def _solid_points(law: Any, old: Any, de: Any, new: Any, C: Any, count: Any) -> Callable[..., bool]:
     if not isinstance(law, types.BaseNamedTuple):
         return lambda law, old, de, new, C, count: solid.return_map_points(law, old, de, new, C, count)
-    return lambda law, old, de, new, C, count: solids_one_by_one(law, old, de, new, C, count)
+    return lambda law, old, de, new, C, count: parts_solids(law, old, de, new, C, count)
 
 
 @njit(**KERNEL)
-def solids_one_by_one(
+def parts_solids(
     law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
 ) -> bool:
-    """One increment at many points, one after the other."""
-    good = True
-    for k in range(old.shape[0]):
-        count[k] = advance(law, old[k], de[k], new[k], C[k])
-        good = good and count[k] >= 0
+    """`parts_points` with all six stresses."""
+    together, good = applies(law), True
+    if together:
+        strain, rows = np.empty((6, len(old))), np.empty((36, len(old)))
+        for k in range(len(old)):
+            for i in range(6):
+                strain[i, k] = de[k, i]
+        solved = flow_points(law, SOLID, old, strain, new, rows, count)
+        for k in range(len(old)):
+            for i in range(6):
+                for j in range(6):
+                    C[k, i, j] = rows[6 * i + j, k]
+        if solved:
+            return True
+    for k in range(len(old)):
+        if not together or count[k] < 0:
+            count[k] = advance(law, old[k], de[k], new[k], C[k])
+            good = good and count[k] >= 0
     return good

@@ -7,12 +7,27 @@ Points are processed in groups. All points of a group get an elastic trial; thos
 local problems are solved together. A row holds one quantity of all points of a group, so that vector registers take
 neighbouring points. The loops are short: a processor works ahead in those that follow, while the terms of one wait for
 each other, only as far as its registers reach. They have no branches: points that do not load plastically, or do not
-converge, are marked and solved one by one by `local.solve`, as are temperature tables and hardening by a curve.
+converge, are marked and solved one by one by `local.solve`, as are all if a curve gives the hardening.
 """
+
+import math
+from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.law.functions import N_ROWS, NODES, ROWS_START, functions, hardening, with_deviation
+from coilset.model.material.law.functions import (
+    N_ROWS,
+    NODES,
+    ROW_LENGTH,
+    ROWS_START,
+    TEMPERATURE,
+    Functions,
+    elasticity,
+    functions,
+    hardening,
+    table_place,
+    with_deviation,
+)
 from coilset.model.material.point.local import (
     Group,
     Local,
@@ -24,7 +39,6 @@ from coilset.model.material.point.local import (
     equations,
     estimate,
     group,
-    halved,
     is_last,
     nearer,
     rough_turn,
@@ -33,7 +47,11 @@ from coilset.model.material.point.local import (
 )
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
-GROUP = 64  # points processed together
+# Points that are processed together: number of the first and how many; their temperature, E and G, and the row of `p`
+# below it with the weight of the one above, 0 without.
+Points = namedtuple("Points", "first size temperature E G row weight")
+
+GROUP = 64  # of them at most
 NEWTON = 8  # iterations at most
 RUNNING, CONVERGED, LEFT_OUT = 0.0, 1.0, 2.0  # how far a point has come in Newton's method
 
@@ -65,9 +83,34 @@ LAST_ZETA, JACOBIAN = KAPPA, GROUP_A
 
 
 @njit(**INLINE)
-def alone(p: np.ndarray) -> bool:
-    """Whether each point's local problem is solved alone: k² from a temperature table, or by a curve."""
-    return p[N_ROWS] != 1.0 or p[ROWS_START + NODES] > 0.0
+def group_from(p: np.ndarray, old: np.ndarray, first: int, columns: int) -> Points:
+    """As many points as are processed together, from the first on: those with a temperature of their own share it.
+
+    Args:
+        p: parameter array of the law.
+        old: states of all points at the start, shape (points, columns) or wider.
+        first: number of the first of them.
+        columns: of a point's state without temperature.
+    """
+    first = max(first, 0)  # tells the compiler that no index is negative
+    most, temperature = min(GROUP, old.shape[0] - first), p[TEMPERATURE]
+    if p[N_ROWS] == 1.0:
+        E, G, _ = elasticity(p, temperature)
+        return Points(first, most, temperature, E, G, ROWS_START, 0.0)
+    size = most
+    if old.shape[1] > columns:
+        temperature, size = old[first, columns], 1
+        while size < most and old[first + size, columns] == temperature:
+            size += 1
+    E, G, _ = elasticity(p, temperature)
+    row, weight = table_place(p, temperature)
+    return Points(first, size, temperature, E, G, row, weight)
+
+
+@njit(**INLINE)
+def alone(p: np.ndarray, of: Points) -> bool:
+    """Whether each point's local problem is solved alone: k² by a curve."""
+    return p[of.row + NODES] > 0.0 or (p[N_ROWS] != 1.0 and p[of.row + ROW_LENGTH + NODES] > 0.0)
 
 
 @njit(**INLINE)
@@ -107,37 +150,37 @@ def _move(first: int, last: int, flow: int, size: int, whole: int, place: np.nda
 
 
 @njit(**INLINE)
-def solve_rows(p: np.ndarray, temperature: float, ca: float, cc: float, flow: int, whole: int, w: np.ndarray) -> None:
+def solve_rows(p: np.ndarray, of: Points, ca: float, flow: int, whole: int, w: np.ndarray) -> None:
     """Solve the local problem of points with given rows up to BETA; see `local_of`.
 
     `ENDED` is the number of each point's local iterations, -1 if there was no convergence.
 
     Args:
         p: parameter array of the law.
-        temperature: of the points, K.
-        ca, cc: moduli of both groups of components.
+        of: the group of points.
+        ca: modulus of the components of group a; that of group c is 2G.
         flow, whole: as `gather` returns them.
         w: the rows.
     """
-    left_out = alone(p)
+    left_out, cc = alone(p, of), 2.0 * of.G
     if not left_out:
-        _estimate(p, ca, cc, whole, w)
-        iterations = _newton(p, ca, cc, whole, w)
+        _estimate(p, of, ca, cc, whole, w)
+        iterations = _newton(p, of, ca, cc, whole, w)
         for j in range(whole):
             converged = w[ENDED, j] == CONVERGED
             w[ENDED, j] = iterations if converged else RUNNING
             left_out |= not converged
     if left_out:
-        _solve_alone(p, temperature, ca, cc, flow, w)
+        _solve_alone(p, of, ca, cc, flow, w)
 
 
 @njit(**KERNEL)
-def _solve_alone(p: np.ndarray, temperature: float, ca: float, cc: float, flow: int, w: np.ndarray) -> None:
+def _solve_alone(p: np.ndarray, of: Points, ca: float, cc: float, flow: int, w: np.ndarray) -> None:
     """Solve the local problems of points that Newton's method in rows leaves out."""
     for j in range(flow):
-        if alone(p) or w[ENDED, j] == RUNNING:
-            values = functions(p, w[WORK, j], temperature)
-            _keep(solve(p, temperature, start_of(ca, cc, w, j), values), w, j)
+        if alone(p, of) or w[ENDED, j] == RUNNING:
+            values = functions(p, w[WORK, j], of.temperature)
+            _keep(solve(p, of.temperature, start_of(ca, cc, w, j), values), w, j)
 
 
 @njit(**INLINE)
@@ -168,18 +211,60 @@ def local_of(w: np.ndarray, j: int) -> Local:
 
 
 @njit(**INLINE)
-def harden(p: np.ndarray, size: int, work: int, at: int, w: np.ndarray) -> None:
-    """Write k² and its slope into the rows from `at` on, at the b* of the row `work`, by the constants of (6.2.2)."""
+def harden(p: np.ndarray, of: Points, size: int, work: int, at: int, w: np.ndarray) -> None:
+    """Write k² and its slope into the rows from `at` on, at the b* of the row `work`."""
+    if alone(p, of):
+        _harden_alone(p, of.temperature, size, work, at, w)
+    else:
+        _harden(p, of, size, work, at, w)
+
+
+@njit(**INLINE)
+def _harden(p: np.ndarray, of: Points, size: int, work: int, at: int, w: np.ndarray) -> None:
+    """By the constants of (6.2.2)."""
     for j in range(size):
-        w[at, j], w[at + 1, j] = hardening(p, ROWS_START, w[work, j])
+        w[at, j], w[at + 1, j] = hardening(p, of.row, w[work, j])
+    if of.weight != 0.0:
+        for j in range(size):
+            low, slope = w[at, j], w[at + 1, j]
+            k2, dk2 = hardening(p, of.row + ROW_LENGTH, w[work, j])
+            w[at, j] = low + of.weight * (k2 - low) if low < math.inf else low
+            w[at + 1, j] = slope + of.weight * (dk2 - slope)
 
 
 @njit(**KERNEL)
-def harden_alone(p: np.ndarray, temperature: float, size: int, w: np.ndarray) -> None:
-    """Write k² and its slope at the start, from a temperature table or a curve, too."""
+def _harden_alone(p: np.ndarray, temperature: float, size: int, work: int, at: int, w: np.ndarray) -> None:
+    """By a curve, which branches."""
     for j in range(size):
-        values = functions(p, w[WORK, j], temperature)
-        w[K2, j], w[K2 + 1, j] = values[0], values[1]
+        values = functions(p, w[work, j], temperature)
+        w[at, j], w[at + 1, j] = values[0], values[1]
+
+
+@njit(**INLINE)
+def _deviate(p: np.ndarray, of: Points, size: int, work: int, at: int, part: float, w: np.ndarray) -> None:
+    """Write ζ and κ at the b* of the row `work`, where k² is in the rows `at`, and a part of their slopes, if any."""
+    for j in range(size):
+        values = with_deviation(p, of.row, w[work, j], w[at, j], w[at + 1, j])
+        w[ZETA, j], w[KAPPA, j] = values[2], values[4]
+        if part > 0.0:
+            w[ZETA + 1, j], w[KAPPA + 1, j] = part * values[3], part * values[5]
+
+
+@njit(**KERNEL)
+def _deviate_between(p: np.ndarray, of: Points, size: int, work: int, part: float, w: np.ndarray) -> None:
+    """`_deviate` between two temperatures, of each of which k² is needed."""
+    for j in range(size):
+        low, up = _row(p, of.row, w[work, j]), _row(p, of.row + ROW_LENGTH, w[work, j])
+        w[ZETA, j], w[KAPPA, j] = low[2] + of.weight * (up[2] - low[2]), low[4] + of.weight * (up[4] - low[4])
+        w[ZETA + 1, j] = part * (low[3] + of.weight * (up[3] - low[3]))
+        w[KAPPA + 1, j] = part * (low[5] + of.weight * (up[5] - low[5]))
+
+
+@njit(**INLINE)
+def _row(p: np.ndarray, o: int, b: float) -> Functions:
+    """All material functions of a row that has no curve."""
+    k2, dk2 = hardening(p, o, b)
+    return with_deviation(p, o, b, k2, dk2)
 
 
 @njit(**INLINE)
@@ -197,11 +282,12 @@ def keep_start(start: Start, w: np.ndarray, j: int) -> None:
 
 
 @njit(**INLINE)
-def _estimate(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> None:
+def _estimate(p: np.ndarray, of: Points, ca: float, cc: float, size: int, w: np.ndarray) -> None:
     """Where Newton's method starts; points that do not load plastically are left out."""
-    for j in range(size):
-        values = with_deviation(p, ROWS_START, w[WORK, j], w[K2, j], w[K2 + 1, j])
-        w[ZETA, j], w[KAPPA, j] = values[2], values[4]
+    if of.weight == 0.0:
+        _deviate(p, of, size, WORK, K2, 0.0, w)
+    else:
+        _deviate_between(p, of, size, WORK, 0.0, w)
     for j in range(size):
         guess = estimate(start_of(ca, cc, w, j), w[K2, j], w[K2 + 1, j], w[ZETA, j], w[KAPPA, j])
         w[B, j], w[MULTIPLIER, j] = guess.b, guess.multiplier
@@ -209,12 +295,12 @@ def _estimate(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> 
 
 
 @njit(**INLINE)
-def _newton(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> int:
+def _newton(p: np.ndarray, of: Points, ca: float, cc: float, size: int, w: np.ndarray) -> int:
     """Newton's method until all have converged."""
     iteration, running = 0, 1
     while running > 0 and iteration < NEWTON:
         iteration += 1
-        _functions(p, size, w)
+        _functions(p, of, size, w)
         _groups(ca, cc, size, w)
         if iteration == 1:
             _approach(ca, cc, size, w)
@@ -228,15 +314,16 @@ def _newton(p: np.ndarray, ca: float, cc: float, size: int, w: np.ndarray) -> in
 
 
 @njit(**INLINE)
-def _functions(p: np.ndarray, size: int, w: np.ndarray) -> None:
+def _functions(p: np.ndarray, of: Points, size: int, w: np.ndarray) -> None:
     """The material functions at b* and half way."""
     for j in range(size):
         w[HALF, j] = 0.5 * (w[WORK, j] + w[B, j])
-    harden(p, size, B, END, w)
-    harden(p, size, HALF, MIDDLE, w)
-    for j in range(size):
-        values = halved(with_deviation(p, ROWS_START, w[HALF, j], w[MIDDLE, j], w[MIDDLE + 1, j]))
-        w[ZETA, j], w[ZETA + 1, j], w[KAPPA, j], w[KAPPA + 1, j] = values[2], values[3], values[4], values[5]
+    _harden(p, of, size, B, END, w)
+    _harden(p, of, size, HALF, MIDDLE, w)
+    if of.weight == 0.0:
+        _deviate(p, of, size, HALF, MIDDLE, 0.5, w)
+    else:
+        _deviate_between(p, of, size, HALF, 0.5, w)
 
 
 @njit(**INLINE)

@@ -9,7 +9,6 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.law.functions import N_ROWS, TEMPERATURE, elasticity
 from coilset.model.material.point.local import Local, Start, yield_crossing
 from coilset.model.material.point.local_rows import (
     BETA,
@@ -19,10 +18,10 @@ from coilset.model.material.point.local_rows import (
     GROUP,
     K2,
     WORK,
-    alone,
+    Points,
     gather,
+    group_from,
     harden,
-    harden_alone,
     keep_start,
     local_of,
     solve_rows,
@@ -202,51 +201,38 @@ def return_map_points(
     Returns:
         Whether the law found a solution at all points.
     """
-    own, good = old.shape[1] > STATE and p[N_ROWS] != 1.0, True  # each point has moduli of its own
+    good, first = True, 0
     w, place = np.empty((ROWS, GROUP)), np.empty(GROUP, np.uint64)  # without sign, which numba would test
     new[:, STATE:] = old[:, STATE:]
-    for first in range(0, old.shape[0], 1 if own else GROUP):
-        size = 1 if own else min(GROUP, old.shape[0] - first)
-        temperature = old[first, STATE] if own else p[TEMPERATURE]
-        E, G, _ = elasticity(p, temperature)
-        _trial(p, temperature, E, G, old, de, first, size, w)
-        _elastic(E, G, first, size, with_tangent, w, new, tangent)
-        flow, whole = gather(size, GIVEN, place, w)
-        count[first : first + size] = 0
+    while first < old.shape[0]:
+        of = group_from(p, old, first, STATE)
+        _trial(p, of, old, de, w)
+        _elastic(of, with_tangent, w, new, tangent)
+        flow, whole = gather(of.size, GIVEN, place, w)
+        first += of.size
+        count[of.first : first] = 0
         if flow == 0:
             continue
-        _begin(E, G, whole, w)
-        solve_rows(p, temperature, E / 1.5, 2.0 * G, flow, whole, w)
-        _end(E, G, whole, with_tangent, w)
-        if not _scatter(first, flow, with_tangent, w, place, new, tangent, count):
+        _begin(of.E, of.G, whole, w)
+        solve_rows(p, of, of.E / 1.5, flow, whole, w)
+        _end(of.E, of.G, whole, with_tangent, w)
+        if not _scatter(of.first, flow, with_tangent, w, place, new, tangent, count):
             good = False
-            for k in range(first, first + size):
+            for k in range(of.first, first):
                 if count[k] < 0:
                     new[k] = old[k]
     return good
 
 
 @njit(**INLINE)
-def _trial(
-    p: np.ndarray,
-    temperature: float,
-    E: float,
-    G: float,
-    old: np.ndarray,
-    de: np.ndarray,
-    first: int,
-    size: int,
-    w: np.ndarray,
-) -> None:
+def _trial(p: np.ndarray, of: Points, old: np.ndarray, de: np.ndarray, w: np.ndarray) -> None:
     """The elastic response of a group, and which of its points flow."""
+    first, size, E, G = of.first, of.size, of.E, of.G
     for k in range(size):
         for i in range(STATE - 1):
             w[STRESS + i, k] = old[first + k, i]
         w[WORK, k] = old[first + k, STATE - 1]
-    if alone(p):
-        harden_alone(p, temperature, size, w)
-    else:
-        harden(p, size, WORK, K2, w)
+    harden(p, of, size, WORK, K2, w)
     for k in range(size):
         e1, e2, e3 = de[0, first + k], de[1, first + k], de[2, first + k]
         s1, s2, s3 = w[STRESS, k] + E * e1, w[STRESS + 1, k] + G * e2, w[STRESS + 2, k] + G * e3
@@ -257,20 +243,12 @@ def _trial(
 
 
 @njit(**INLINE)
-def _elastic(
-    E: float,
-    G: float,
-    first: int,
-    size: int,
-    with_tangent: bool,
-    w: np.ndarray,
-    new: np.ndarray,
-    tangent: np.ndarray,
-) -> None:
+def _elastic(of: Points, with_tangent: bool, w: np.ndarray, new: np.ndarray, tangent: np.ndarray) -> None:
     """Write the elastic response of a group."""
+    first, size = of.first, of.size
     if with_tangent:
         for i in range(9):
-            modulus = 0.0 if i % 4 else E if i == 0 else G
+            modulus = 0.0 if i % 4 else of.E if i == 0 else of.G
             for k in range(size):
                 tangent[i, first + k] = modulus
     for k in range(size):

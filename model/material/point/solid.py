@@ -12,7 +12,6 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.law.functions import N_ROWS, TEMPERATURE, elasticity
 from coilset.model.material.point.local import Local, Start, yield_crossing
 from coilset.model.material.point.local_rows import (
     BETA,
@@ -22,10 +21,10 @@ from coilset.model.material.point.local_rows import (
     GROUP,
     K2,
     WORK,
-    alone,
+    Points,
     gather,
+    group_from,
     harden,
-    harden_alone,
     keep_start,
     local_of,
     solve_rows,
@@ -198,28 +197,27 @@ def return_map_points(
     Returns:
         Whether the law found a solution at all points.
     """
-    own, good = old.shape[1] > STATE and p[N_ROWS] != 1.0, True  # each point has moduli of its own
+    good, first = True, 0
     w, place = np.empty((ROWS, GROUP)), np.empty(GROUP, np.uint64)  # without sign, which numba would test
     new[:, STATE:] = old[:, STATE:]
-    for first in range(0, old.shape[0], 1 if own else GROUP):
-        size = 1 if own else min(GROUP, old.shape[0] - first)
-        temperature = old[first, STATE] if own else p[TEMPERATURE]
-        E, G, _ = elasticity(p, temperature)
-        _trial(p, temperature, E, G, old, de, first, size, w, new)
-        for k in range(first, first + size):
-            hooke(E, G, C[k])
-        flow, whole = gather(size, GIVEN, place, w)
-        count[first : first + size] = 0
+    while first < old.shape[0]:
+        of = group_from(p, old, first, STATE)
+        _trial(p, of, old, de, w, new)
+        first += of.size
+        for k in range(of.first, first):
+            hooke(of.E, of.G, C[k])
+        flow, whole = gather(of.size, GIVEN, place, w)
+        count[of.first : first] = 0
         if flow == 0:
             continue
-        _begin(G, whole, w)
-        solve_rows(p, temperature, 2.0 * G, 2.0 * G, flow, whole, w)
-        _end(E, G, whole, w)
+        _begin(of.G, whole, w)
+        solve_rows(p, of, 2.0 * of.G, flow, whole, w)
+        _end(of.E, of.G, whole, w)
         for j in range(flow):
-            k = first + int(place[j])
+            k = of.first + int(place[j])
             count[k] = int(w[ENDED, j])
             if count[k] > 0:
-                _write(G, w, j, new[k], C[k])
+                _write(of.G, w, j, new[k], C[k])
             else:
                 good = False
                 for i in range(6):
@@ -239,29 +237,16 @@ def _set(values: Six, w: np.ndarray, row: int, j: int) -> None:
 
 
 @njit(**INLINE)
-def _trial(
-    p: np.ndarray,
-    temperature: float,
-    E: float,
-    G: float,
-    old: np.ndarray,
-    de: np.ndarray,
-    first: int,
-    size: int,
-    w: np.ndarray,
-    new: np.ndarray,
-) -> None:
+def _trial(p: np.ndarray, of: Points, old: np.ndarray, de: np.ndarray, w: np.ndarray, new: np.ndarray) -> None:
     """The elastic response of a group, written as if it were the state at the end, and which of its points flow."""
+    first, size, E, G = of.first, of.size, of.E, of.G
     for k in range(size):
         for i in range(STATE - 1):
             w[STRESS + i, k] = old[first + k, i]
         w[WORK, k] = old[first + k, STATE - 1]
         for i in range(6):
             w[STRAIN + i, k] = de[first + k, i]
-    if alone(p):
-        harden_alone(p, temperature, size, w)
-    else:
-        harden(p, size, WORK, K2, w)
+    harden(p, of, size, WORK, K2, w)
     for k in range(size):
         trial, B = elastic(_six(w, STRESS, k), _six(w, STRAIN, k), E, G), _six(w, BACK, k)
         n = active(trial, B)
