@@ -4,8 +4,8 @@ Force at 50, 90 and 100 % of the travel, set and residual shear stress inside, e
 against references with 64 elements a turn, 16 × 64 section points, an accuracy of 0.02 % and a bedding as stiff as E,
 four times the default (`verification/random_springs/stated_error.py` makes them, `stated_error.yaml` holds them).
 
-The factors of the estimates were chosen with 39 of the springs; a note says how the fresh ones fare, which are few
-and of moderate cost: none of them goes to block.
+The factors of the estimates were chosen with 39 of the springs; a note says how the fresh ones fare, none of which
+goes to block, as references of such springs take minutes.
 
 Tolerances: at most 5 % of the true errors are above the stated ones, and the median of stated over true is at most 5.
 """
