@@ -11,12 +11,12 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
-from scipy.spatial import ConvexHull
 
 from coilset.meshes.springs import functions
 
 if TYPE_CHECKING:
+    from scipy.interpolate import CubicHermiteSpline
+
     from coilset.meshes.section_shapes import Outline
 
 KNOTS = 257  # of a curved piece: an ellipse of one piece is met within 1e-9 of its size
@@ -35,7 +35,7 @@ class Boundary:
         hole: size of a similar hole about the same origin over that of the boundary; 0 of a solid section.
     """
 
-    pieces: tuple[CubicHermiteSpline, ...]
+    pieces: "tuple[CubicHermiteSpline, ...]"
     hole: float = 0.0
 
     @classmethod
@@ -135,7 +135,7 @@ class Boundary:
         marks = []
         for piece in self.pieces:
             for k in range(2):
-                one = CubicHermiteSpline(piece.x, piece(piece.x)[:, k], piece(piece.x, 1)[:, k])
+                one = _spline(piece.x, piece(piece.x)[:, k], piece(piece.x, 1)[:, k])
                 turning = one.derivative().roots(extrapolate=False)
                 marks.append(piece(np.append(turning[np.isfinite(turning)], [0.0, 1.0])))
         points = np.concatenate(marks)
@@ -164,6 +164,8 @@ class Boundary:
         Args:
             number: of points on the section's boundary.
         """
+        from scipy.spatial import ConvexHull  # as in `_spline`
+
         points = self.points(number, False)
         hull = points[ConvexHull(points).vertices]
         sides = np.roll(hull, -1, axis=0) - hull
@@ -198,9 +200,16 @@ class Boundary:
         return Boundary(tuple(closed))
 
 
-def _above(piece: CubicHermiteSpline, level: float, normal: np.ndarray) -> Iterator[CubicHermiteSpline]:
+def _spline(t: np.ndarray, values: np.ndarray, slopes: np.ndarray) -> "CubicHermiteSpline":
+    """A function by its values and slopes at places t."""
+    from scipy.interpolate import CubicHermiteSpline  # takes a third of a second, and round wire needs none
+
+    return CubicHermiteSpline(t, values, slopes)
+
+
+def _above(piece: "CubicHermiteSpline", level: float, normal: np.ndarray) -> "Iterator[CubicHermiteSpline]":
     """The parts of a piece with b · n > −level."""
-    roots = CubicHermiteSpline(piece.x, piece(piece.x) @ normal + level, piece(piece.x, 1) @ normal).roots()
+    roots = _spline(piece.x, piece(piece.x) @ normal + level, piece(piece.x, 1) @ normal).roots()
     marks = np.unique(np.concatenate([[0.0], roots[(roots > 0.0) & (roots < 1.0)], [1.0]]))
     for start, end in pairwise(marks):
         if end - start > NOTHING and piece(0.5 * (start + end)) @ normal > -level:
@@ -208,15 +217,15 @@ def _above(piece: CubicHermiteSpline, level: float, normal: np.ndarray) -> Itera
             yield _piece(piece(t), (end - start) * piece(t, 1))
 
 
-def _piece(points: np.ndarray, slopes: np.ndarray) -> CubicHermiteSpline:
+def _piece(points: np.ndarray, slopes: np.ndarray) -> "CubicHermiteSpline":
     """b(t) through points at equal steps of t from 0 to 1, with its slopes; a straight line by its ends."""
     chord = points[-1] - points[0]
     length = np.linalg.norm(chord)
     off = points - points[0]
     if length > 0.0 and np.abs(off[:, 0] * chord[1] - off[:, 1] * chord[0]).max() <= STRAIGHT * length**2:
         points, slopes = points[[0, -1]], np.array([chord, chord])
-    return CubicHermiteSpline(np.linspace(0.0, 1.0, len(points)), points, slopes)
+    return _spline(np.linspace(0.0, 1.0, len(points)), points, slopes)
 
 
-def _reversed(piece: CubicHermiteSpline) -> CubicHermiteSpline:
+def _reversed(piece: "CubicHermiteSpline") -> "CubicHermiteSpline":
     return _piece(piece(piece.x)[::-1], -piece(piece.x, 1)[::-1])

@@ -14,7 +14,6 @@ direction to the coil: outwards is that of the stress-free wire.
 import math
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from coilset.meshes.boundary import Boundary
 from coilset.model.runtime.kernels import njit
@@ -33,6 +32,8 @@ def gauge_table(section: Boundary | None) -> np.ndarray:
     """
     if section is None:
         return ROUND
+    from scipy.interpolate import CubicSpline  # takes a third of a second, and round wire needs none
+
     corners = section.difference(CORNERS) * [-1.0, 1.0]
     corners = corners[np.argsort(np.arctan2(corners[:, 1], corners[:, 0]))]
     sides = np.roll(corners, -1, axis=0) - corners

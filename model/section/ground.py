@@ -5,7 +5,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import BarycentricInterpolator
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.section.integration import FIBRES
@@ -96,6 +95,8 @@ def whole_sections(
     outline: Outlined, rule: DiskRule, radius: np.ndarray, bend: np.ndarray
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """`cut_section` of an outline for many radii and κ r, shapes (n,), by polynomials in κ r between every BENDS."""
+    from scipy.interpolate import BarycentricInterpolator  # takes a third of a second, and whole round wire needs none
+
     found, tables = [], {}
     for r, b in zip(radius.tolist(), bend.tolist(), strict=True):
         cell = int(b * BENDS)
