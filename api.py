@@ -133,6 +133,17 @@ class Case:
         """
         return cls._of(read_case(path, settings))
 
+    @classmethod
+    def _given(cls, case: object) -> CheckedCase:
+        """What a Case checked.
+
+        Raises:
+            InputError: it is none.
+        """
+        if not isinstance(case, cls):
+            raise InputError(f"must be a Case, as Case.read('case.yaml') gives one, not {type(case).__name__}", "case")
+        return case._case
+
     @property
     def entries(self) -> dict[str, Any]:
         """All entries with their defaults, as plain data."""
@@ -370,7 +381,10 @@ def solve(
     set 13.29 mm of 35 mm
     """
     comm = MPI.COMM_WORLD if comm is None else comm
-    first = Analysis(case._case, comm, threads=threads or usual(comm.size), law=law, contacts=contacts, steps=steps)
+    checked = Case._given(case)
+    if law is not None and not isinstance(law, OwnLaw):
+        raise InputError(f"must be a Law, as Law(update) makes one of a function, not {type(law).__name__}", "law")
+    first = Analysis(checked, comm, threads=threads or usual(comm.size), law=law, contacts=contacts, steps=steps)
     analysis = within_accuracy(first, lambda one, _: one.run(report))
 
     def write(folder: Path) -> None:
@@ -416,7 +430,7 @@ def slice_(case: Case, section: str | None = None) -> Result:
     from coilset.model.slice.output import write_fields
     from coilset.model.slice.summary import summarise as summarise_slice
 
-    analysis = SliceAnalysis(case._case, parse(section) if section else None)
+    analysis = SliceAnalysis(Case._given(case), parse(section) if section else None)
     analysis.run()
 
     def write(folder: Path) -> None:

@@ -43,6 +43,16 @@ def test_a_wrong_entry_is_one_line():
     assert "\n" not in str(problem.value)
 
 
+def test_what_is_no_case_and_no_law_is_refused():
+    case = Case.read("examples/ck15_presetting.yaml")
+    with pytest.raises(InputError, match=r"^case: must be a Case, as Case\.read\('case\.yaml'\) gives one, not str$"):
+        coilset.api.solve("examples/ck15_presetting.yaml")
+    with pytest.raises(InputError, match=r"^case: must be a Case"):
+        coilset.api.slice_({})
+    with pytest.raises(InputError, match=r"^law: must be a Law, as Law\(update\) makes one of a function, not type$"):
+        coilset.api.solve(case, law=dict)
+
+
 def test_a_folder_without_results_is_refused(tmp_path):
     with pytest.raises(InputError, match="holds no results"):
         Result.open(tmp_path)
