@@ -27,15 +27,15 @@ def _wire(spring: Spring) -> Iterator[Warning]:
     """Lengths in metres or inches are most easily detected by the wire diameter."""
     t = spring.breaks
     wire, (low, high) = spring.wire_diameter(t), WIRE_USUAL
-    i = np.argmin(wire) if wire.min() < low else np.argmax(wire)
-    if not low <= wire[i] <= high:
+    i, limit = _farthest(wire, WIRE_USUAL)
+    if limit is not None:
         yield Warning(
             "wire",
             "spring.wire_diameter",
             f"the wire is {wire[i]:.4g} mm thick at turn {t[i]:.3g}, outside the {low:g} to {high:g} mm usual in "
             "cold coiling (EN 15800); are all lengths in mm?",
             float(wire[i]),
-            low if wire[i] < low else high,
+            limit,
             "mm",
         )
 
@@ -44,16 +44,24 @@ def _index(spring: Spring) -> Iterator[Warning]:
     t = spring.breaks
     index = 2 * spring.mean_radius(t) / (spring.wire_diameter(t) * max(1.0, spring.width))
     low, high = INDEX_USUAL
-    i = np.argmin(index) if index.min() < low else np.argmax(index)
-    if not low <= index[i] <= high:
+    i, limit = _farthest(index, INDEX_USUAL)
+    if limit is not None:
         yield Warning(
             "index",
             "spring.mean_diameter",
             f"D/d = {index[i]:.3g} at turn {t[i]:.3g} is outside the "
             f"{low:g} to {high:g} usual in cold coiling (EN 15800)",
             float(index[i]),
-            low if index[i] < low else high,
+            limit,
         )
+
+
+def _farthest(values: np.ndarray, usual: tuple[float, float]) -> tuple[int, float | None]:
+    """The number of the least value if it is below what is usual, else of the greatest; and the limit it is beyond."""
+    low, high = usual
+    if values.min() < low:
+        return int(np.argmin(values)), low
+    return int(np.argmax(values)), None if values.max() <= high else high
 
 
 def _solid_coils(spring: Spring) -> Iterator[Warning]:

@@ -92,7 +92,7 @@ def group_from(p: np.ndarray, old: np.ndarray, first: int, columns: int) -> Poin
         first: number of the first of them.
         columns: of a point's state without temperature.
     """
-    first = max(first, 0)  # tells the compiler that no index is negative
+    first = max(first, 0)  # so that numba tests no index for its sign
     most, temperature = min(GROUP, old.shape[0] - first), p[TEMPERATURE]
     if p[N_ROWS] == 1.0:
         E, G, _ = elasticity(p, temperature)
