@@ -31,12 +31,12 @@ from coilset.model.runtime.kernels import njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import (
-    Operator,
+    Elastic,
     Tables,
-    condense,
     elastic_stiffness,
     find_warping,
     place,
+    slopes,
     strains,
     work_space,
 )
@@ -104,10 +104,10 @@ class WarpingSections:
         geometry = _geometry(which, radius, placement)
         self.inside = Tables._make((*geometry, *points, self.weights))
         self.rim = Tables._make((*geometry, *rims, np.zeros(rims[0].shape)))
-        self.hooke = np.empty((6, 6))
-        hooke(parameters[ROWS_START + YOUNG], parameters[ROWS_START + SHEAR], self.hooke)
-        self.elastic = elastic_stiffness(self.hooke, self.inside)
-        self.unknowns = 3 + 3 * points[2].shape[3]
+        C = np.empty((6, 6))
+        hooke(parameters[ROWS_START + YOUNG], parameters[ROWS_START + SHEAR], C)
+        self.elastic = Elastic(elastic_stiffness(C, self.inside), C)
+        self.unknowns = 3 + points[2].shape[1]
         # of each thread: sections brought up to date, local iterations on the way
         self.iterations = np.zeros((self.threads.number, 2), dtype=np.int64)
 
@@ -151,7 +151,6 @@ class WarpingSections:
             law,
             self.inside,
             self.elastic,
-            self.hooke,
             strain - start["strain"],
             place.matrices,
             place.stretch,
@@ -186,7 +185,8 @@ class WarpingSections:
 def _with_polynomials(points: Sequence[np.ndarray], bases: Sequence[Basis]) -> tuple[np.ndarray, ...]:
     """y, z, and the polynomials and their slopes there, of the whole disk and of each section that is ground."""
     y, z = np.ascontiguousarray(np.moveaxis(np.array(points), -1, 0))
-    return y, z, np.array([basis(one) for basis, one in zip(bases, points, strict=True)])
+    values = [np.concatenate(np.swapaxes(basis(one), 1, 2)) for basis, one in zip(bases, points, strict=True)]
+    return y, z, np.ascontiguousarray(values)
 
 
 def _geometry(which: np.ndarray, radius: np.ndarray, placement: Placement) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -204,8 +204,7 @@ def update_sections(
     part: int,
     p: np.ndarray,
     at: Tables,
-    elastic: np.ndarray,
-    hooke: np.ndarray,
+    elastic: Elastic,
     de: np.ndarray,
     placement: np.ndarray,
     stretch: np.ndarray,
@@ -225,7 +224,7 @@ def update_sections(
         ends, part: as in `fibres.update_sections`.
         p: parameters of the material law.
         at: geometry of the sections.
-        elastic: stiffness of elastic sections by their geometry; hooke: tangent of elastic points.
+        elastic: stiffness of elastic sections, and of elastic points.
         de, placement, stretch, s, D: as in `fibres.update_sections`.
         old, old_a, old_slope: state of the points with all six stresses, warping, and its slope da/de in the section's
             own strains, at the last equilibrium, shapes (cells, sections, points, n_state), (cells, sections, unknowns)
@@ -236,17 +235,12 @@ def update_sections(
     Returns:
         False if the law or the warping found no solution, or the strains are no numbers.
     """
-    n, points, last = a.shape[2], at.w.shape[1], -1
+    n, points = a.shape[2], at.w.shape[1]
     w = work_space(points, n)
-    B, dA = np.zeros((points, 6, len(w.step))), np.empty(points)
-    resultant, tangent, work = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
+    inverse, dA, work = np.empty(points), np.empty(points), np.empty((6, 6))
     for c in range(ends[part], ends[part + 1]):
         for g in range(de.shape[1]):
-            P, number = placement[c, g], at.number[c, g]
-            if number != last:
-                last = number
-                place(at, number, B, dA)
-            of = Operator(number, B, dA, elastic[number], hooke)
+            P, of = placement[c, g], place(at, at.number[c, g], inverse, dA)
             to_section(P, de[c, g], w.step)
             good = False
             for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
@@ -254,18 +248,15 @@ def update_sections(
                     a[c, g, m] = old_a[c, g, m]
                     for j in range(6):
                         a[c, g, m] += follow * old_slope[c, g, m, j] * w.step[j]
-                good = find_warping(p, of, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
+                good = find_warping(p, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
                 if good:
                     break
             if not good:
                 return False
-            condense(w, resultant, tangent)
-            for m in range(n):
-                for j in range(6):
-                    slope[c, g, m, j] = -w.X[m, n + j]
-            if not math.isfinite(resultant.sum()):
+            slopes(w, slope[c, g])
+            if not math.isfinite(w.rest[:6].sum()):
                 return False
-            to_chord(P, stretch[c, g], resultant, tangent, work, s[c, g], D[c, g])
+            to_chord(P, stretch[c, g], w.rest[:6], w.K[:6], work, s[c, g], D[c, g])
             count[part, 0] += 1
     return True
 
@@ -284,16 +275,13 @@ def update_surface(
 ) -> None:
     """Bring points on the surface of a part to the end of the increment `de`, `da` of strains and warping."""
     n, points = da.shape[2], at.w.shape[1]
-    w = work_space(points, n)
-    B, dA, last = np.zeros((points, 6, len(w.step))), np.empty(points), -1
+    w, inverse, dA = work_space(points, n), np.empty(points), np.empty(points)
     for c in range(ends[part], ends[part + 1]):
         for g in range(de.shape[1]):
-            if at.number[c, g] != last:
-                last = at.number[c, g]
-                place(at, last, B, dA)
+            of = place(at, at.number[c, g], inverse, dA)
             to_section(placement[c, g], de[c, g], w.step)
             for j in range(n):
                 w.step[6 + j] = da[c, g, j]
-            strains(B, w)
+            strains(of, w.step, w.strain)
             solid_points(p, old[c, g], w.strain, new[c, g], w.C, w.flow)
             spoil_failed(w.flow, new[c, g])

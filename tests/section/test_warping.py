@@ -5,7 +5,7 @@ import pytest
 
 from coilset.meshes.springs.placement import straight
 from coilset.model.material import library
-from coilset.model.section.condensation import TOLERANCE, strain_operator
+from coilset.model.section.condensation import TOLERANCE, place, strains
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import polar, rim
@@ -83,14 +83,14 @@ def test_warping_does_no_work(ck15):
     """Stresses of a plastic section on every unit warping, as far as the iteration's tolerance lets them."""
     wire = HelixSection(ck15, "warping", 5.0, 5.0)
     wire.update(np.array([1e-4, 0, 1e-4, 2e-3, 0, 4e-4]))
-    rule, place = wire.rule, wire.placement
-    y, z = np.ascontiguousarray(rule.points.T)
-    n = wire.sections.unknowns
-    B = np.zeros((len(rule), 6, 6 + n))
-    f = Basis.of_disk(3)(np.stack([y, z], axis=-1))
-    strain_operator(y, z, f, RADIUS, place.curvature[0, 0], place.torsion[0, 0], B)
+    rule = wire.rule
+    B = np.empty((len(rule), 6, 6 + wire.sections.unknowns))
+    geometry = place(wire.sections.inside, 0, np.empty(len(rule)), np.empty(len(rule)))
+    for j, unit in enumerate(np.eye(B.shape[2])):
+        strains(geometry, unit, column := np.empty((len(rule), 6)))
+        B[:, :, j] = column
     stress = wire.trial["point_state"][0, 0][:, :6]
-    volume = rule.weights * (1.0 - place.curvature[0, 0] * RADIUS * y)
+    volume = rule.weights * (1.0 - wire.placement.curvature[0, 0] * RADIUS * rule.points[:, 0])
     rest = np.einsum("pi,pij,p->j", stress, B, volume)
     assert np.abs(rest[6:]).max() < 5.0 * TOLERANCE * ck15.E
     assert np.abs(rest[:6]).max() > 0.1 * np.abs(stress).max()

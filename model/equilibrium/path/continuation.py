@@ -273,8 +273,8 @@ class Continuation:
             The step's Outcome, with the cost of failed attempts, and how often it was cut.
 
         Raises:
-            SolveError: if it failed down to the smallest size, or once on a path that gives way, or the program stalls,
-                see `StepControl.patience`; the state is that of the last converged step.
+            SolveError: if it failed down to the smallest size, or the program stalls, see `StepControl.patience`; the
+                state is that of the last converged step.
         """
         self._spent.clear()
         self._unstable, unstable_at = None, 0.0
@@ -292,8 +292,6 @@ class Continuation:
             outcome = self._attempt(load, self.starts(load, length), length, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 unstable_at = size
-            if path.gives_way and not (outcome.converged or outcome.refused):
-                raise path.failure(outcome.reason)
             # no snaps while time passes: a path that ends there ends the run
             if not outcome.converged and path.moment is None and self._ends_here(size, outcome):
                 there = size if self._unstable is None else unstable_at

@@ -29,7 +29,6 @@ class Path:
         place: where on it the body is, in words.
         reachable: what can be given in place of the target, in words; empty if that is unknown.
         moment: time and temperature at a place on the path; None where no time passes.
-        gives_way: whether the first step without an equilibrium ends it, as another way leads on.
         length: of the path up to a place that is counted in regular steps, in their mean length; None: they are equal.
     """
 
@@ -41,7 +40,6 @@ class Path:
     reachable: Callable[[], str] = lambda: ""
     length: Callable[[float], float] | None = None
     moment: Callable[[float], Moment] | None = None
-    gives_way: bool = False
 
     def step_length(self, done: float, size: float) -> float:
         """Length of a step of a size from a place on the path, both in regular steps; in their mean length."""
