@@ -19,9 +19,6 @@ from coilset.model.section.integration import SUMS
 TOLERANCE, REST = 1e-9, 1e-12
 MAX_ITERATIONS = 40
 SHORTEST = 1e-3  # part of a correction
-# A correction below which the stiffness is kept for those that follow, and for the section tangent: it changes by the
-# correction over the strain at which the law's slope changes, 1e-5 and more. And how fast corrections must fall.
-NEAR, FASTER = 1e-7, 0.1
 ROUNDING = 1e-13  # of moduli
 RIGID = 9  # the section strains ε, γ12, γ13, φ′, κ2, κ3; w2 = y, w3 = z, (w2, w3) = (z, y); then the polynomials
 VECTORS = 16  # lengths of loops are multiples of it, where they can be
@@ -101,7 +98,7 @@ def find_warping(
     Returns:
         False if the law had no solution somewhere, or the last change of the warping is not within the tolerance.
     """
-    n, stiff, change = len(a), True, w.change[6:]
+    n, change = len(a), w.change[6:]
     before, last, part = math.inf, math.inf, 1.0
     for _ in range(MAX_ITERATIONS):
         for i in range(n):
@@ -119,7 +116,7 @@ def find_warping(
                 a[i] += (part - shorter) * change[i]
             part = shorter
             continue
-        if stiff and not stiffness(of, elastic, w):
+        if not stiffness(of, elastic, w):
             return False
         solve(w)
         largest, before, part = 0.0, 0.0, 1.0
@@ -132,7 +129,7 @@ def find_warping(
             return True
         for i in range(n):
             a[i] -= change[i]
-        stiff, last = largest > NEAR or largest > FASTER * last, largest
+        last = largest
     return False
 
 
@@ -331,7 +328,7 @@ def _differs(C: np.ndarray, hooke: np.ndarray) -> bool:
 
 @njit(**KERNEL)
 def add_loss(of: Section, which: np.ndarray, C: np.ndarray, hooke: np.ndarray, K: np.ndarray) -> None:
-    """Add ∫ Bᵀ (C − Hooke's law) B g dA over some of the points, in single precision: far nearer than NEAR requires.
+    """Add ∫ Bᵀ (C − Hooke's law) B g dA over some of the points, in single precision, which is 1e-8 of D.
 
     Args:
         of: the section's geometry.
