@@ -133,7 +133,7 @@ class LoadHistory:
         """The reason why the trial state is impossible (the heads have passed each other), or None; collective."""
         height, wire = self.control.trial_height, 2.0 * self.rod.largest_radius
         if height >= wire:
-            return None
+            return self.program.opened_too_far(self.control.trial_force)
         return f"the heads would be {height:.4g} mm apart, less than the wire's {wire:.4g} mm"
 
     def _gives_way(self) -> str:

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from coilset.model.case import read_case
 from coilset.model.equilibrium.path.branch_switching import Snap
 from coilset.model.equilibrium.path.stability import Stability
+from coilset.model.equilibrium.path.step_sizes import Position
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Drag, Load
 from coilset.model.material import library
@@ -119,15 +120,16 @@ def test_drag_resists_and_its_derivative_is_in_the_tangent():
     assert np.array_equal(K1[held], K0[held])
 
 
-def test_a_yielding_path_forks_without_a_snap():
-    """Where the hourglass's coils first touch: a stable state without a jump of force, and no energy from nothing.
-
-    The path of this coarse mesh forks with the thesis's element, not with the mixed one.
-    """
+def hourglass():
+    """To where its coils first touch, and on; its coarse mesh forks there with the thesis's element."""
     settings = ["mesh.section.rule=abramowitz9", "mesh.elements_per_turn=8", "mesh.element=thesis", "accuracy=none"]
     program = "loading=[{to: {travel: 25.93}, steps: 6}, {to: {travel: 30.25}, steps: 1}]"
-    analysis = Analysis(read_case(EXAMPLES / "springs/hourglass.yaml", [*settings, program]), MPI.COMM_SELF)
-    steps = analysis.run().steps
+    return Analysis(read_case(EXAMPLES / "springs/hourglass.yaml", [*settings, program]), MPI.COMM_SELF).run().steps
+
+
+def test_a_yielding_path_forks_without_a_snap(monkeypatch):
+    """A stable state without a jump of force, and no energy from nothing; so does one found beside it at once."""
+    steps = hourglass()
     forks = [number for number, step in enumerate(steps) if step.left_branch]
     assert forks
     assert all(step.negative_pivots == 0 for step in steps)
@@ -136,3 +138,9 @@ def test_a_yielding_path_forks_without_a_snap():
         assert fork.released_energy_Nmm == 0.0
         # found: 0.0035, over 0.07 mm of travel
         assert fork.force_N == pytest.approx(before.force_N, rel=5e-3)
+    monkeypatch.setattr(Position, "has_left_branch", property(lambda position: True))
+    beside = hourglass()
+    assert sum(step.cuts for step in beside) < sum(step.cuts for step in steps)
+    assert all(step.negative_pivots == 0 for step in beside)
+    assert sum(step.released_energy_Nmm for step in beside) == 0.0
+    assert beside[-1].force_N == pytest.approx(steps[-1].force_N, rel=5e-3)

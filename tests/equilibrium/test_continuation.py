@@ -76,7 +76,18 @@ def test_the_steps_of_an_automatic_run_give_its_numbers_again(make):
             [getattr(s, name) for s in other], [getattr(s, name) for s in one], rtol=1e-6, atol=1e-7
         )
     assert np.ptp(np.diff(marks[0])) > 0.01
-    cut = make("[{to: {travel: 12}, steps: [0.1, 1]}]", "solver.options.snes_max_it=3").run().steps
+    analysis = make("[{to: {travel: 12}, steps: [0.1, 1]}]")
+    solve = analysis.newton.solve
+
+    def fails_once(load, start=None):
+        outcome = solve(load, start)
+        if len(analysis.result.steps) == 1:
+            analysis.newton.solve = solve
+            return replace(outcome, converged=False, stagnated=True)
+        return outcome
+
+    analysis.newton.solve = fails_once
+    cut = analysis.run().steps
     assert sum(step.cuts for step in cut) > 0
     assert {0.1, 1.0} <= {step.progress for step in cut}
 
@@ -105,7 +116,8 @@ IMPATIENT = f"solver.control.steps.patience={PATIENCE}"
 
 
 def test_a_program_that_no_longer_advances_ends_soon_with_its_cause(make):
-    """Within `patience` evaluations and one solve; what was reached is kept, and how the spring gives way is named."""
+    """Within `patience` evaluations and one solve, and as many in a snap; what was reached is kept, and how the spring
+    gives way is named."""
     analysis = make("[{to: {travel: 15}}]", IMPATIENT, "solver.control.steps.smallest=1e-9")
     solves, solve, spent = listened(analysis), analysis.newton.solve, []
 
@@ -118,7 +130,7 @@ def test_a_program_that_no_longer_advances_ends_soon_with_its_cause(make):
     tried = f"more than {PATIENCE} states were tried in vain within a hundredth of the way; no reason; "
     with pytest.raises(SolveError, match=tried + r"the .* gives? way .*; a height of [0-9.]+ mm can be reached$"):
         analysis.run()
-    assert PATIENCE < sum(spent) + len(spent) <= PATIENCE + 2 * max(solve.evaluations for solve in solves)
+    assert PATIENCE < sum(spent) + len(spent) <= 2 * (PATIENCE + 2 * max(solve.evaluations for solve in solves))
     assert len(analysis.result.steps) == 3
     assert analysis.result.snapshots[-1].height == analysis.result.steps[-1].seat_height_mm
 

@@ -59,6 +59,14 @@ def test_forces_that_no_longer_halve_are_in_equilibrium_near_that(norms, met_at)
     assert not test.is_met(Imbalance(3e-6, 1.0, 100.0, 0.0), 1e-9, 0.0)
 
 
+def test_the_end_of_an_iteration_may_be_near_enough():
+    """Forces that jump by less than 1e-5 of 100 N, with the prescribed increments met."""
+    test = EquilibriumTest(1e-9, 24)
+    assert test.is_near(Imbalance(0.9e-3, 1.0, 100.0, 0.0))
+    assert not test.is_near(Imbalance(1.1e-3, 1.0, 100.0, 0.0))
+    assert not test.is_near(Imbalance(0.9e-3, 1.0, 100.0, 1e-8))
+
+
 def test_growth_without_bound_ends_at_once():
     assert lost([1.0, 0.99 * DIVERGENCE, 0.5], 20) is None
     assert lost([1.0, 1.01 * DIVERGENCE], 20) == (1, Reason.DIVERGED_DTOL)

@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mpi4py import MPI
-from scipy.linalg import eigvalsh_tridiagonal, ldl
+from scipy.linalg import eigh, eigvalsh_tridiagonal, ldl
 
 from coilset.model.case import Case
 from coilset.model.equilibrium.path.branch_switching import Snap
 from coilset.model.equilibrium.path.continuation import Continuation
 from coilset.model.equilibrium.path.stability import mode_in_words, negative_pivots
 from coilset.model.equilibrium.settings import StepControl
+from coilset.model.equilibrium.system.load import Drag
 from coilset.model.results.records.buckling import axis_offset, buckling, critical_travel, vanishing
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
@@ -59,6 +60,32 @@ def test_negative_pivots_are_negative_eigenvalues(travel):
     expected = int((eigvalsh_tridiagonal(np.diag(blocks), np.diag(blocks, -1)) < 0.0).sum())
     assert (expected > 0) == (travel > HARINGX)
     assert negative_pivots(analysis.stability._factors(analysis.newton.iteration.load)) == expected
+
+
+def edge(analysis):
+    """The load of a spring with a negative stiffness at a node half way up, as of a coil on the edge of another."""
+    layout, load = analysis.system.layout, analysis.newton.iteration.load
+    stiffness = np.zeros(layout.size_local)
+    here = int(layout.station_dofs[len(layout.station_dofs) // 2, 0]) - layout.start
+    if 0 <= here < len(stiffness):
+        stiffness[here] = -1e6
+    return load.resisted(Drag(stiffness, np.zeros_like(stiffness)))
+
+
+def test_the_weakest_mode_is_the_lowest_and_not_the_nearest_to_zero():
+    """Against the eigenvalues of the dense matrix."""
+    analysis = pressed(1.0, 1, mesh=4)
+    analysis.run()
+    K, load = dense(analysis), edge(analysis)
+    free = np.setdiff1d(np.arange(len(load.is_held)), load.held)
+    weights = np.diag(analysis.stability.weights(load)[free])
+    lowest = [eigh(K + part * np.diag(load.resistance.stiffness[free]), weights, eigvals_only=True) for part in (0, 1)]
+    assert [int((values < 0.0).sum()) for values in lowest] == [0, 1]
+    assert lowest[1][0] < -1e3 < 0.0 < lowest[1][1]
+    for values, at in zip(lowest, (load.resisted(None), load), strict=True):
+        weakest = analysis.stability.weakest(at)
+        assert weakest.negative == (values[0] < 0.0)
+        assert weakest.value == pytest.approx(values[0], rel=1e-6)
 
 
 def test_what_gives_way_is_named():
@@ -188,9 +215,10 @@ def test_ranks_count_and_weigh_alike():
         analysis.run()
         load = analysis.newton.iteration.load
         negative = negative_pivots(analysis.stability._factors(load))
-        found.append((negative, analysis.stability.weakest(load).value))
+        found.append((negative, *(analysis.stability.weakest(at).value for at in (load, edge(analysis)))))
     assert found[0][0] == found[1][0] == 0
-    assert found[0][1] == pytest.approx(found[1][1], rel=1e-6)
+    assert found[0][1:] == pytest.approx(found[1][1:], rel=1e-6)
+    assert found[0][2] < -1e3
 
 
 @pytest.mark.mpi

@@ -345,7 +345,7 @@ def test_changed_points_of_a_measured_spring_are_seen(example, tmp_path):
     assert provenance.contents(case)["spring.file"] != before["spring.file"]
 
 
-FIRST_TOUCH = ["contact.bedding=1e11", "solver.options={pc_type: none}"]
+FIRST_TOUCH = ["contact.bedding=1e13", "solver.options={pc_type: none}"]
 
 
 @pytest.mark.parametrize("setting", FIRST_TOUCH)

@@ -250,6 +250,13 @@ class Iteration:
         tolerance = self.test.tolerance if self.load_factor == 1.0 else self.control.part_tolerance
         if self.test.is_met(found, tolerance, self.system.body.rounding(X.getArray(readonly=True))):
             return Reason.CONVERGED_FNORM_RELATIVE
+        lost = self._lost(snes, iteration, norm)
+        if lost != Reason.ITERATING and self.method.searches and self.test.is_near(found):
+            return Reason.CONVERGED_FNORM_RELATIVE
+        return lost
+
+    def _lost(self, snes: PETSc.SNES, iteration: int, norm: float) -> int:
+        """The reason to give up, or to go on."""
         if iteration >= snes.getTolerances()[3]:
             return Reason.DIVERGED_MAX_IT
         if self.method.is_arc_length:

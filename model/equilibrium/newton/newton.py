@@ -23,6 +23,7 @@ from coilset.model.equilibrium.system.system import System
 
 log = logging.getLogger("coilset.steps")
 
+WITHIN_REACH = 1e-2  # of the change of forces: an iteration that ends with less out of balance goes on once
 FEW_AUGMENTATIONS, LESS = 5, 0.9  # after so many of them, penetrations are less than this part of what they were
 
 
@@ -164,6 +165,9 @@ class Newton:
         good: PETSc.Vec | None = None  # at `reached`; None: the last equilibrium
         while True:
             more, more_linear = iteration.run(aim)
+            if iteration.reason == Reason.DIVERGED_MAX_IT and iteration.ratio < WITHIN_REACH:
+                iterations, linear = iterations + more, linear + more_linear
+                more, more_linear = iteration.run(iteration.load_factor)
             iterations, linear, aim = iterations + more, linear + more_linear, iteration.load_factor
             if iteration.reason > 0:
                 if aim == 1.0:

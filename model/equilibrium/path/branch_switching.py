@@ -69,6 +69,20 @@ def holding(weakest: Weakest) -> float:
     return 2.0 * abs(weakest.value)
 
 
+def aside(stability: Stability, weakest: Weakest, load: Load, amplitude: float) -> PETSc.Vec:
+    """A displacement along the weakest mode of the trial state, towards where the spring came from; collective.
+
+    Args:
+        amplitude: of the station that moves most, over the wire's radius.
+    """
+    system = stability.system
+    came, mode = system.increments.getArray(readonly=True), weakest.mode.getArray(readonly=True)
+    back = sum_of_ranks(system.comm, (stability.weights(load) * came) @ mode) > 0.0
+    displacement = weakest.mode.copy()
+    displacement.scale((-amplitude if back else amplitude) * system.line.rod.largest_radius)
+    return displacement
+
+
 class Snap:
     """The path against the drag. Each step is committed: the wire yields along this path, not along a straight one.
 
@@ -107,18 +121,16 @@ class Snap:
     def _begin(self, load: Load, unstable: PETSc.Vec | None) -> Descent:
         """Start at an unstable equilibrium, displaced along its weakest mode towards where the spring came from; or,
         without one, at the last equilibrium."""
-        radius, origin = self.system.line.rod.largest_radius, np.zeros(self.system.layout.size_local)
-        weights = self.stability.weights(load)
+        origin = np.zeros(self.system.layout.size_local)
         if unstable is not None and self.solve(load, Start(unstable)).converged:
             weakest = self.stability.weakest(load)
-            came, mode = self.system.increments.getArray(readonly=True), weakest.mode.getArray(readonly=True)
-            side = -1.0 if sum_of_ranks(self.system.comm, (weights * came) @ mode) > 0.0 else 1.0
-            origin = side * self.control.branch_amplitude * radius * mode
+            origin = aside(self.stability, weakest, load, self.control.branch_amplitude).getArray().copy()
             self.system.commit()
         else:
             self.system.restore()
             weakest = self.stability.weakest(self.stability.iteration.load)
-        advance = self.control.snap_advance * radius
+        advance = self.control.snap_advance * self.system.line.rod.largest_radius
+        weights = self.stability.weights(load)
         return Descent(holding(weakest), origin, weights, advance, weakest, np.zeros_like(origin))
 
     def _descend(self, load: Load, descent: Descent) -> Outcome:

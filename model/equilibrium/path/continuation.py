@@ -15,7 +15,7 @@ from petsc4py import PETSc
 
 from coilset.model.equilibrium.newton.newton import Newton, Start
 from coilset.model.equilibrium.newton.outcome import Estimate, Outcome
-from coilset.model.equilibrium.path.branch_switching import Snap
+from coilset.model.equilibrium.path.branch_switching import Snap, aside
 from coilset.model.equilibrium.path.guess import Guess
 from coilset.model.equilibrium.path.next_touch import CROSSING, NEAR, RESTART, SHORT, NextTouch
 from coilset.model.equilibrium.path.stability import Stability
@@ -199,21 +199,43 @@ class Continuation:
         if negative <= self.negative_pivots:
             return outcome
         self._unstable = self.system.increments.copy()
+        beside = self._beside(load) if self.steps.position.has_left_branch else None
+        if beside is not None:
+            return beside
         reason = f"the equilibrium is unstable: {negative} of the tangent's eigenvalues are negative"
         return replace(outcome, converged=False, reason=reason)
 
-    def _ends_here(self, size: float, outcome: Outcome) -> bool:
-        """Whether a failed step is so short that its path ends, or must be left because it becomes unstable.
+    def _beside(self, load: Load) -> Outcome | None:
+        """A stable state near the unstable one of the trial state, on a branch that forks off before it; collective.
 
-        The last stable state is near once the step is as short as `unstable_cuts` make a regular one, however many of
-        these were for steps before.
+        It is the continuation of the path, as that of Shanley's column, if it is no farther off than the wire's radius.
+        """
+        assert self.stability is not None
+        assert self._unstable is not None
+        start = self._unstable.copy()
+        start.axpy(1.0, aside(self.stability, self.stability.weakest(load), load, self.control.branch_amplitude))
+        outcome = self._judged(self._newton(load, Start(start)))
+        if not outcome.converged:
+            return None
+        start.waxpy(-1.0, self._unstable, self.system.increments)
+        near = self.stability.greatest_displacement(start) <= self.system.line.rod.largest_radius
+        negative = self.stability.negative_pivots(load) if near else math.inf
+        if negative > self.negative_pivots:
+            return None
+        return replace(outcome, negative_pivots=int(negative), left_branch=True)
+
+    def _ends_here(self, path: Path, size: float, outcome: Outcome) -> bool:
+        """Whether the path of a failed step ends, or must be left because it becomes unstable.
+
+        It ends where the step is as short as one may be, or where `patience` is used up. The last stable state is near
+        once the step is as short as `unstable_cuts` make a regular one, however many of these were for steps before.
         """
         control = self.control
-        shortest = control.cut * size < control.smallest
-        if self.stability is None or (self._unstable is None and (not shortest or outcome.refused)):
+        ends = control.cut * size < control.smallest or self.steps.stalls(path, self._in_vain)
+        if self.stability is None or (self._unstable is None and (not ends or outcome.refused)):
             return False
         near = size <= (1.0 + ON_MARK) * control.cut**control.unstable_cuts
-        return shortest or near or self.steps.position.cuts >= control.unstable_cuts
+        return ends or near or self.steps.position.cuts >= control.unstable_cuts
 
     def _snap(self, path: Path, place: float) -> Outcome:
         """Leave a path that ends or becomes unstable, and find a stable state.
@@ -227,7 +249,7 @@ class Continuation:
         assert self.stability is not None
         there, load = self._unstable, partial(path.load, place)
         before, began = self.system.state.copy(), self.system.evaluations
-        outcome = Snap(self.stability, self.control, partial(self._snap_step, path, began)).go(load, there)
+        outcome = Snap(self.stability, self.control, partial(self._snap_step, began)).go(load, there)
         if outcome.converged:
             free = f"set {outcome.released:.3g} N mm free" if outcome.released else "set no energy free: its path forks"
             log.info("step %d: the spring left its path and %s", self.number + 1, free)
@@ -247,9 +269,9 @@ class Continuation:
             outcome = replace(outcome, negative_pivots=self.stability.negative_pivots(load))
         return self._conclude(load, outcome, 0.0)
 
-    def _snap_step(self, path: Path, began: int, load: Load, start: Start) -> Outcome:
-        """One of a snap, which began after `began` evaluations and was in vain unless it comes to rest."""
-        if self.steps.stalls(path, self._in_vain + self.system.evaluations - began):
+    def _snap_step(self, began: int, load: Load, start: Start) -> Outcome:
+        """One of a snap, which began after `began` evaluations and may take as many as may be in vain."""
+        if self.system.evaluations - began > self.control.patience:
             return Outcome(False, "the program stalls", math.inf)
         return self._judged(self._newton(load, start))
 
@@ -273,8 +295,8 @@ class Continuation:
             The step's Outcome, with the cost of failed attempts, and how often it was cut.
 
         Raises:
-            SolveError: if it failed down to the smallest size, or the program stalls, see `StepControl.patience`; the
-                state is that of the last converged step.
+            SolveError: if it failed down to the smallest size, or once on a path that gives way, or the program stalls,
+                see `StepControl.patience`; the state is that of the last converged step.
         """
         self._spent.clear()
         self._unstable, unstable_at = None, 0.0
@@ -292,12 +314,15 @@ class Continuation:
             outcome = self._attempt(load, self.starts(load, length), length, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 unstable_at = size
+            if path.gives_way and not (outcome.converged or outcome.refused):
+                raise path.failure(outcome.reason)
             # no snaps while time passes: a path that ends there ends the run
-            if not outcome.converged and path.moment is None and self._ends_here(size, outcome):
+            if not outcome.converged and path.moment is None and self._ends_here(path, size, outcome):
                 there = size if self._unstable is None else unstable_at
                 beside = self._snap(path, begun.done + there)
                 if beside.converged:
                     outcome, size = beside, there
+                    self.steps.begin_patience()
                 self._unstable = None  # once a step
             if outcome.converged:
                 self.number += 1

@@ -13,7 +13,7 @@ from coilset.model.body.body import Moment
 from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.path.continuation import Continuation
-from coilset.model.equilibrium.path.step_sizes import Path, Position
+from coilset.model.equilibrium.path.step_sizes import ON_MARK, Path, Position
 from coilset.model.equilibrium.settings import Drive
 from coilset.model.equilibrium.system.heads import AXIAL, When
 from coilset.model.equilibrium.system.layout import SEATS
@@ -60,6 +60,8 @@ class ProgramPosition:
         height, force: where the stage began, mm and N.
         on_path: Position on the path of the stage.
         redirected: where it goes in place of the stage's own target; None: there.
+        behind: part of the stage before its path.
+        opened_from: the force from which the heads are opened, N, see LoadProgram; None: they are not.
         begun: Moment when the stage began.
         heads: values of the heads' freedoms where it began, mm and rad, and their forces on the spring, N and N mm.
     """
@@ -69,6 +71,8 @@ class ProgramPosition:
     force: float
     on_path: Position
     redirected: Stage | None = None
+    behind: float = 0.0
+    opened_from: float | None = None
     begun: Moment = START
     heads: tuple[float, ...] = (0.0,) * 24
 
@@ -129,6 +133,10 @@ class Driven(Protocol):
 class LoadProgram:
     """Drives a spring through stages.
 
+    A spring whose coils have slipped past each other is released along a path on which its force rises for a while, and
+    which a force that falls cannot follow. Where it finds no equilibrium, the heads are opened, as a press does, until
+    the force has fallen by a regular step.
+
     Args:
         control: Heads, or what takes their place.
     """
@@ -140,7 +148,13 @@ class LoadProgram:
     def begin(self, number: int) -> None:
         """Begin a stage at the last equilibrium."""
         self.redirected: Stage | None = None
-        self.number, self._height, self._force = number, self.control.height, self.control.force
+        self.number = number
+        self._begin_path()
+
+    def _begin_path(self, behind: float = 0.0, opened_from: float | None = None) -> None:
+        """Begin a path at the last equilibrium, where a part of the stage is behind."""
+        self._behind, self._opened_from = behind, opened_from
+        self._height, self._force = self.control.height, self.control.force
         self._heads = (*self.control.freedoms("equilibrium"), *self.control.reactions("equilibrium"))
         self._begun = self.now
         self.continuation.begin()
@@ -159,6 +173,8 @@ class LoadProgram:
             self._force,
             self.continuation.steps.position,
             self.redirected,
+            self._behind,
+            self._opened_from,
             self._begun,
             tuple(float(value) for value in self._heads),
         )
@@ -166,6 +182,7 @@ class LoadProgram:
     @position.setter
     def position(self, position: ProgramPosition) -> None:
         self.number, self._height, self._force = position.stage, position.height, position.force
+        self._behind, self._opened_from = position.behind, position.opened_from
         self._begun, self._heads = position.begun, position.heads
         self.continuation.steps.position, self.redirected = position.on_path, position.redirected
 
@@ -179,9 +196,19 @@ class LoadProgram:
         self.control.measure = measure = self._measure(self.stage)
         continuation.guess.carried = measure % SEAT_DOFS >= SEAT_DOFS // 2  # a rotation
         while continuation.steps.position.done < self._regular(self.stage):
-            path = self._path(self.stage)
-            before = path.progress(continuation.steps.position.done)
-            outcome, cuts = continuation.advance(path)
+            opens = self._opened_from is None and self._can_open(self.stage)
+            if opens and not continuation.steps.position.done and self._rises_first(self.stage):
+                self._open("its force rises first")
+                opens = False
+            path = replace(self._path(self._driven(self.stage)), gives_way=opens)
+            before = self._progress(path)
+            try:
+                outcome, cuts = continuation.advance(path)
+            except SolveError as failure:
+                if not opens:
+                    raise
+                self._open(str(failure))
+                continue
             error = outcome.estimate.force if outcome.estimate is not None else math.nan
             log.info(
                 "step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e, error about %.2g N; next %.4g of a "
@@ -194,8 +221,54 @@ class LoadProgram:
                 error,
                 continuation.steps.position.size,
             )
-            progress = path.progress(continuation.steps.position.done)
+            progress = self._progress(path)
+            if self._fallen(self.control.force) * continuation.control.automatic >= 1.0:
+                self._begin_path(progress)
             yield StepTaken(continuation.number, progress, progress - before, cuts, outcome)
+
+    def _progress(self, path: Path) -> float:
+        """Part of the stage that is behind."""
+        return self._behind + (1.0 - self._behind) * path.progress(self.continuation.steps.position.done)
+
+    # ---- a release along which the force rises ---------------------------------------------------------------------
+
+    def _can_open(self, stage: Stage) -> bool:
+        """Whether a stage releases the spring by its force alone; collective."""
+        drives = any(drive.end is not None or drive.table for drive in stage.drives)
+        if stage.kind != "force" or stage.value is None or stage.hours or drives or not self.control.force:
+            return False
+        compressed = (self.control.free_length - self.control.height) * self.control.force > 0.0
+        return compressed and 0.0 <= stage.value / self.control.force < 1.0
+
+    def _rises_first(self, stage: Stage) -> bool:
+        """Whether the spring would be unstable where it is, were its force prescribed; collective."""
+        control, continuation = self.control, self.continuation
+        if continuation.stability is None:
+            return False
+        continuation.system.restore()
+        weakest = continuation.stability.weakest(self._load(stage, control.force, 0.0))
+        return weakest.negative > continuation.negative_pivots
+
+    def _open(self, reason: str) -> None:
+        """Open the heads from here on."""
+        log.info("step %d: the heads are opened (%s)", self.continuation.number + 1, reason)
+        self._begin_path(self._progress(self._path(self._driven(self.stage))), self.control.force)
+
+    def _driven(self, stage: Stage) -> Stage:
+        """What drives a stage now: itself, or the height, which leads beyond the free spring and never to its end."""
+        if self._opened_from is None:
+            return stage
+        return replace(stage, kind="height", value=2.0 * self.control.free_length - self._height)
+
+    def _fallen(self, force: float) -> float:
+        """Part of the way from where the heads are opened to the stage's target, by a force."""
+        if self._opened_from is None or self.stage.value is None:
+            return 0.0
+        return (force - self._opened_from) / (self.stage.value - self._opened_from)
+
+    def opened_too_far(self, force: float) -> str | None:
+        """The reason why a trial state with this force lies beyond the target of an opening, or None."""
+        return "the heads would be opened beyond the target" if self._fallen(force) >= 1.0 else None
 
     def settle(self, taken: StepTaken) -> StepTaken:
         """Find equilibrium again at the same height or force, after something else has changed the body; collective.
@@ -221,13 +294,17 @@ class LoadProgram:
 
     def _regular(self, stage: Stage) -> int:
         if isinstance(stage.steps, tuple):
-            return len(stage.steps)
+            return len(self._marks(stage.steps))
         return self.continuation.control.automatic if stage.steps == "auto" else stage.steps
+
+    def _marks(self, steps: tuple[float, ...]) -> list[float]:
+        """The ends of steps, in parts of the path to which they belong."""
+        return [(mark - self._behind) / (1.0 - self._behind) for mark in steps if mark > self._behind + ON_MARK]
 
     def _path(self, stage: Stage) -> Path:
         regular, begin = self._regular(stage), self._force if stage.kind == "force" else self._height
         end = begin if stage.value is None else stage.value
-        marks = np.array([0.0, *stage.steps]) if isinstance(stage.steps, tuple) else None
+        marks = np.array([0.0, *self._marks(stage.steps)]) if isinstance(stage.steps, tuple) else None
 
         def part(done: float) -> float:
             return done / regular if marks is None else float(np.interp(done, np.arange(regular + 1), marks))

@@ -22,6 +22,7 @@ from coilset.model.equilibrium.system.load import Load
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
 ITERATIONS = 12
+FURTHER = 4.0  # factor of a shift that leaves negative eigenvalues
 APART = 0.5  # of a mode's greatest displacement: coils whose displacements differ by more move against each other
 
 
@@ -60,9 +61,31 @@ class Stability:
         return _negative(self._factors(load))
 
     def weakest(self, load: Load) -> Weakest:
-        """The weakest mode at the last evaluation; collective."""
-        factors, matrix = self._factors(load), self._matrix
-        scale = self.layout.vector(self.weights(load))
+        """The weakest mode at the last evaluation; collective.
+
+        Inverse iteration finds the eigenvalues nearest to zero. Where more of them are negative than it has found, as
+        of a coil on the edge of another, it goes on with a matrix that is shifted until all of its are positive: the
+        lowest ones are then the nearest.
+        """
+        factors, symmetric = self._factors(load), self.system.is_symmetric
+        matrix, scale = self._matrix, self.layout.vector(self.weights(load))
+        values, block = self._nearest(factors, scale)
+        negative = _negative(factors) if symmetric else int(np.count_nonzero(values < 0.0))
+        if symmetric and negative > np.count_nonzero(values < 0.0):
+            shift = float(np.abs(values).max())
+            while _negative(factors) and np.isfinite(shift):
+                shift *= FURTHER
+                shifted = matrix.copy()
+                shifted.setDiagonal(shift * scale, addv=PETSc.InsertMode.ADD_VALUES)
+                factors.setOperators(shifted)
+                factors.setUp()
+            values, block = self._nearest(factors, scale)
+        mode = block[int(values.argmin())]
+        mode.scale(1.0 / self.greatest_displacement(mode))
+        return Weakest(negative, float(values.min()), mode)
+
+    def _nearest(self, factors: PETSc.PC, scale: PETSc.Vec) -> tuple[np.ndarray, list[PETSc.Vec]]:
+        """Eigenvalues of the tangent that are nearest to zero, or to the shift of the factors, and their modes."""
         block = self._start_block()
         values = np.zeros(len(block))
         for _iteration in range(ITERATIONS):
@@ -70,11 +93,8 @@ class Stability:
                 right = vector.duplicate()
                 right.pointwiseMult(scale, vector)
                 factors.apply(right, vector)
-            values, block = _rayleigh_ritz(matrix, scale, block, self.system.is_symmetric)
-        mode = block[int(values.argmin())]
-        mode.scale(1.0 / self.greatest_displacement(mode))
-        negative = _negative(factors) if self.system.is_symmetric else int(np.count_nonzero(values < 0.0))
-        return Weakest(negative, float(values.min()), mode)
+            values, block = _rayleigh_ritz(self._matrix, scale, block, self.system.is_symmetric)
+        return values, block
 
     # ---- matrix ----------------------------------------------------------------------------------------------------
 

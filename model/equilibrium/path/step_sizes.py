@@ -29,6 +29,7 @@ class Path:
         place: where on it the body is, in words.
         reachable: what can be given in place of the target, in words; empty if that is unknown.
         moment: time and temperature at a place on the path; None where no time passes.
+        gives_way: whether the first step without an equilibrium ends it, as another way leads on.
         length: of the path up to a place that is counted in regular steps, in their mean length; None: they are equal.
     """
 
@@ -40,6 +41,7 @@ class Path:
     reachable: Callable[[], str] = lambda: ""
     length: Callable[[float], float] | None = None
     moment: Callable[[float], Moment] | None = None
+    gives_way: bool = False
 
     def step_length(self, done: float, size: float) -> float:
         """Length of a step of a size from a place on the path, both in regular steps; in their mean length."""
@@ -77,6 +79,11 @@ class Position:
     earlier: float = 0.0
     share: float = 0.0
 
+    @property
+    def has_left_branch(self) -> bool:
+        """Whether the last step on this path left another one that became unstable."""
+        return self.done > 0.0 and not self.before
+
 
 class StepSizes:
     """Sizes of the steps along a path.
@@ -92,6 +99,10 @@ class StepSizes:
     def begin(self) -> None:
         """Stand at the start of a path."""
         self.position, self._mark = Position(), None
+
+    def begin_patience(self) -> None:
+        """Count the evaluations in vain from here on."""
+        self._mark = None
 
     def resize(self, size: float) -> None:
         """Make the next step as large as `size` regular steps."""
