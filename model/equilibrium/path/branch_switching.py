@@ -20,6 +20,7 @@ from coilset.model.equilibrium.system.load import Drag, Load
 
 log = logging.getLogger("coilset.steps")
 FASTER = 4.0  # maximum factor of a change of drag, and of a step's length over the intended one
+FADES = 0.7  # factor of the least drag, by a step: after four, that of the step that failed is tried again
 STUCK = 1e-3  # of the intended step: an unstable state that moves less is held by contact
 
 
@@ -38,6 +39,7 @@ class Descent:
         moved: length of the last step, mm.
         speed, before: drag times length of the last step and of the one before it, N.
         failed: number of consecutive failed steps.
+        least: drag below which a step has lately failed, N/mm; it fades.
     """
 
     drag: float
@@ -51,6 +53,7 @@ class Descent:
     speed: float = 0.0
     before: float = 0.0
     failed: int = 0
+    least: float = 0.0
 
     @property
     def is_stuck(self) -> bool:
@@ -59,7 +62,8 @@ class Descent:
 
     def adapt(self) -> None:
         """Set the drag for a next step of the right length."""
-        self.drag *= float(np.clip(self.moved / self.advance, 1.0 / FASTER, FASTER))
+        self.drag = max(self.drag * float(np.clip(self.moved / self.advance, 1.0 / FASTER, FASTER)), self.least)
+        self.least *= FADES
         if self.weakest.negative:
             self.drag = max(self.drag, holding(self.weakest))
 
@@ -142,6 +146,7 @@ class Snap:
             self.system.restore()
             descent.failed += 1
             descent.drag *= FASTER
+            descent.least = descent.drag
             return replace(outcome, converged=False)
         way = self.system.increments.getArray(readonly=True).copy()
         force = drag.forces(way)
