@@ -46,7 +46,7 @@ def update_points(
         d: increments of the section strains, shape (6,).
         old, new: states of the points at the start, and at the end, which is written, shape (points, n_state).
         strain: work space, shape (3, points).
-        C, with_tangent, count: as in `rod.return_map_points`.
+        C, with_tangent, count: as in `return_map.flow_points`.
 
     Returns:
         Whether the law found a solution at all points.

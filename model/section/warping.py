@@ -26,7 +26,7 @@ from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.functions import ROWS_START, SHEAR, YOUNG
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.choice import solid_points
-from coilset.model.material.point.solid import hooke
+from coilset.model.material.point.groups import hooke
 from coilset.model.runtime.kernels import njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section

@@ -16,7 +16,7 @@ from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.material.point import increment, points
-from coilset.model.material.point.choice import advance_points, advance_solids, rod_map
+from coilset.model.material.point.choice import advance_points, advance_solids, point_map
 
 COLD, WARM, ALPHA = 293.15, 473.15, 1.2e-5
 MODULI = {COLD: (80000.0, 0.29), WARM: (74000.0, 0.31)}
@@ -57,8 +57,8 @@ def law_of(entries, isotropic="none", kinematic="none"):
 def advance(law, state, de, before, after):
     """One increment over the time between two clocks; state and tangent."""
     new, C = np.full_like(state, np.nan), np.empty((len(de), len(de)))
-    over = CreepLaw(law.creep, law.parts()).over(before, after)
-    count = rod_map(over, state, *de, new, C) if len(de) == 3 else increment.advance(over, state, de, new, C)
+    over = CreepLaw(law.data.creep, law.parts()).over(before, after)
+    count = point_map(over, state, de, new, C)
     assert count >= 0
     return new, C
 
@@ -150,7 +150,7 @@ def _unit(rng, n):
 
 def error_along(law, rates, segments, first, n):
     """Maximum error of stress at the segments' ends over the maximum stress, with n increments a segment."""
-    creeping, components = CreepLaw(law.creep, law.parts()), rates.n
+    creeping, components = CreepLaw(law.data.creep, law.parts()), rates.n
     clock = creeping.clock(0.0, COLD)
     state, _ = advance(law, unstressed(components), first, clock, clock)
     elastic, c, error, greatest = first.copy(), 1e-12, 0.0, 0.0
@@ -187,14 +187,14 @@ def test_time_hardening_against_scipy(components):
     segments, first = path(3, components)
     T = entries["temperature"]
     cold = (*segments[0][:2], np.zeros(components), T, T)
-    clock = CreepLaw(law.creep, law.parts()).clock(0.0, T)
+    clock = CreepLaw(law.data.creep, law.parts()).clock(0.0, T)
     start, _ = advance(law, unstressed(components, T), first, clock, clock)
     elastic, _ = rates.through(first, 0.0, cold)
     errors = []
     for n in (20, 40):
-        state, clock = start, CreepLaw(law.creep, law.parts()).clock(0.0, T)
+        state, clock = start, CreepLaw(law.data.creep, law.parts()).clock(0.0, T)
         for t in cold[1] * (np.arange(1, n + 1) / n) ** 3:
-            after = CreepLaw(law.creep, law.parts()).clock(t, T, clock)
+            after = CreepLaw(law.data.creep, law.parts()).clock(t, T, clock)
             state, _ = advance(law, state, cold[2], clock, after)
             clock = after
         errors.append(np.abs(state[:components] - rates.stress(elastic, T)).max() / np.abs(state[:components]).max())
@@ -210,7 +210,7 @@ def test_relaxation(hours):
     N, p = entries["exponent"], entries["time_exponent"]
     A = np.sqrt(3) ** (N + 1) * entries["strain"] / entries["stress"] ** N
     exact = (500.0 ** (1 - N) + (N - 1) * G * A * hours**p) ** (1 / (1 - N))
-    creeping = CreepLaw(law.creep, law.parts())
+    creeping = CreepLaw(law.data.creep, law.parts())
     start = unstressed(3)
     start[1] = 500.0
     errors = []
@@ -229,7 +229,7 @@ def test_creep_of_a_bar_that_yields():
     """Tension at a constant rate from first yield on, with linear hardening: dσ (1/E + 1/H) = dε − dc."""
     k0, a = 2 / 3 * 300.0**2, 4 / 3 * 5000.0
     law = law_of(GAROFALO | {"activation_energy": 0.0}, {"k0_squared": k0, "a1": 1.0, "a2": a})
-    E, k = law.E, law.creep
+    E, k = law.E, law.data.creep
     end, hours = 2e-3, 30.0
     exact = solve_ivp(
         lambda t, s: (end / hours - k.strain * np.sinh(s / k.stress) ** k.exponent) / (1 / E + 1 / 5000.0),
@@ -240,7 +240,7 @@ def test_creep_of_a_bar_that_yields():
         atol=1e-9,
     ).y[0, -1]
     assert exact > 303.0
-    creeping, errors = CreepLaw(law.creep, law.parts()), []
+    creeping, errors = CreepLaw(law.data.creep, law.parts()), []
     for n in (10, 20):
         state, clock = unstressed(3), creeping.clock(0.0, COLD)
         state[0] = 300.0
@@ -256,7 +256,7 @@ def test_creep_of_a_bar_that_yields():
 def test_no_time_is_the_return_mapping(components):
     """Without time the law is the parameter array; rows with creep's columns take the same way, and keep them."""
     law = library.load("ck15")
-    creeping = Law(law.data.model_copy(update={"creep": law_of(CREEP).creep}))
+    creeping = Law(law.data.model_copy(update={"creep": law_of(CREEP).data.creep}))
     over_time = LawOverTime(creeping, creeping.parameters(), None)
     clock = {"clock": np.array([3.0, COLD, 2.0])}
     p = over_time.over(clock, clock)
@@ -286,7 +286,7 @@ def test_tangent(components, entries, yielding):
     hard = {"k0_squared": 2 / 3 * 250.0**2, "a1": 1.0, "a2": 4000.0}
     kinematic = {"a5": 5.0, "a6": 0.3, "a7": 0.0}
     law = law_of(entries, hard, kinematic) if yielding else law_of(entries)
-    rng, creeping = np.random.default_rng(8), CreepLaw(law.creep, law.parts())
+    rng, creeping = np.random.default_rng(8), CreepLaw(law.data.creep, law.parts())
     steps, flowed = 10.0 ** np.arange(-2, -4.01, -0.5), 0
     for hours in (1e-2, 1.0, 100.0, 1e4):
         before = creeping.clock(0.0, COLD)
@@ -312,7 +312,7 @@ def test_tangent(components, entries, yielding):
 def test_both_ways_through_a_rods_point(entries, yielding):
     """In closed form where nothing yields, and by the general iteration: the same stress, creep strain and tangent."""
     law = law_of(entries, {"k0_squared": 2 / 3 * 250.0**2, "a1": 1.0, "a2": 4000.0} if yielding else "none")
-    rng, creeping, n = np.random.default_rng(4), CreepLaw(law.creep, law.parts()), 0
+    rng, creeping, n = np.random.default_rng(4), CreepLaw(law.data.creep, law.parts()), 0
     for hours in (1e-6, 1e-2, 1.0, 1e3, 1e8):
         for size in (0.0, 1e-9, 1e-4, 3e-3):
             before = creeping.clock(0.5, COLD)
@@ -322,7 +322,7 @@ def test_both_ways_through_a_rods_point(entries, yielding):
             middle = creeping.clock(1.0, COLD + 20, before)
             over = creeping.over(middle, creeping.clock(1.0 + hours, COLD + 60, middle))
             de, found = 0.3 * size * _unit(rng, 3), []
-            for way in (lambda *a: rod_map(a[0], a[1], *a[2], *a[3:]), increment.advance):
+            for way in (point_map, increment.advance):
                 new, C = np.full_like(state, np.nan), np.empty((3, 3))
                 assert way(over, state, de, new, C) >= 0
                 found.append((new, C))
@@ -337,7 +337,7 @@ def test_both_ways_through_a_rods_point(entries, yielding):
 def test_warm_hours():
     """Two hours at a constant temperature, by Arrhenius's factor; and on a ramp, by scipy."""
     law = law_of(CREEP)
-    creeping, Q = CreepLaw(law.creep, law.parts()), CREEP["activation_energy"] / GAS_CONSTANT
+    creeping, Q = CreepLaw(law.data.creep, law.parts()), CREEP["activation_energy"] / GAS_CONSTANT
     assert creeping.worth(2.0, CREEP["temperature"], CREEP["temperature"]) == pytest.approx(2.0, rel=1e-14)
     assert creeping.worth(2.0, 400.0, 400.0) == pytest.approx(2 * np.exp(Q * (1 / 323.15 - 1 / 400.0)), rel=1e-13)
     ramp = quad(lambda t: np.exp(Q * (1 / 323.15 - 1 / (300 + 50 * t))), 0, 3, epsabs=0, epsrel=1e-12)[0]

@@ -6,7 +6,8 @@ import pytest
 from coilset.model.material import library
 from coilset.model.material.law.hardening_curves import Swift
 from coilset.model.material.law.law import Law
-from coilset.model.material.point import points, rod, solid
+from coilset.model.material.point import points
+from coilset.model.material.point.choice import advance_points, advance_solids
 from coilset.model.material.point.local_rows import GROUP
 
 MATERIALS = ("ck15", "linear_isotropic", "linear_kinematic", "mixed", "ideal_plastic", "voce")
@@ -51,10 +52,10 @@ def advanced(law, old, de, temperature=None):
     new, count, p = np.empty_like(old), np.empty(len(old), np.int64), law.parameters(temperature)
     if de.shape[1] == 3:
         rows = np.empty((9, len(old)))
-        assert rod.return_map_points(p, old, de.T.copy(), new, rows, True, count)
+        assert advance_points(p, old, de.T.copy(), new, rows, True, count)
         return new, rows.T.reshape(-1, 3, 3), count
     tangent = np.empty((len(old), 6, 6))
-    assert solid.return_map_points(p, old, de, new, tangent, count)
+    assert advance_solids(p, old, de, new, tangent, count)
     return new, tangent, count
 
 

@@ -20,8 +20,8 @@ import numpy as np
 from coilset.model.material.creep.flow import POWER, creep_strain, crept, passes
 from coilset.model.material.law.functions import elasticity, functions
 from coilset.model.material.law.parts import Parts
+from coilset.model.material.point.groups import Vector, active, inner, scaled
 from coilset.model.material.point.increment import GAMMA
-from coilset.model.material.point.rod import Vector, active, inner
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²
@@ -33,7 +33,7 @@ Inverse = namedtuple("Inverse", "D k v")
 
 
 @njit(**KERNEL)
-def without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
+def without_yield(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
     """`increment.advance` if no stage yields; else, or if one finds no end, -1: nothing of what is written counts."""
     q = law.viscous
     h, after = passes(q, old[7])
@@ -73,14 +73,9 @@ def without_yield(law: Parts, old: np.ndarray, de: Vector, new: np.ndarray, C: n
     for i in range(3, old.shape[0]):
         new[i] = old[i]
     new[7], new[8] = before + change, two.of.u ** q[POWER]
-    own = _scaled(two.d, two.of.by_start * between.u_by_stress)
+    own = scaled(two.d, two.of.by_start * between.u_by_stress)
     _tangent(_inverse(two, E, G), S, one.d, (between.by_stress - theta, theta), own, C)
     return one.count + two.count
-
-
-@njit(**INLINE)
-def _scaled(a: Vector, f: float) -> Vector:
-    return (f * a[0], f * a[1], f * a[2])
 
 
 @njit(**INLINE)

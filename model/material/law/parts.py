@@ -5,7 +5,7 @@ from collections import namedtuple
 from coilset.model.material.law.functions import HEATING, N_ROWS, ROW_LENGTH, ROWS_START, table_place
 from coilset.model.runtime.kernels import INLINE, njit
 
-CREEP_ENTRIES = 9  # of the array of creep
+CREEP_ENTRIES, MOST_TERMS = 9, 8  # of the array of creep; back stresses that saturate
 # What the law's kernels take in the place of the parameter array, where the exponential return map does not suffice:
 # that array; ⅔Cᵢ and γᵢ of the back stresses that saturate, shape (temperatures, terms, 2), no terms: the one of ζ, or
 # none; and the array of creep (`creep.flow`), whose time is 0 where nothing creeps.

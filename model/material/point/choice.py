@@ -16,8 +16,8 @@ from coilset.model.material.creep.flow import TIME
 from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.functions import SPIN
 from coilset.model.material.law.parts import OwnPoints, Parts
-from coilset.model.material.point import rod, solid
-from coilset.model.material.point.back_stresses import ROD, SOLID, applies, flow_points
+from coilset.model.material.point import back_stresses, return_map
+from coilset.model.material.point.groups import ROD, SOLID, Components
 from coilset.model.material.point.increment import advance
 from coilset.model.runtime.kernels import KERNEL, njit
 
@@ -31,12 +31,12 @@ def rod_points(
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """One increment of the rod's law at many points, as `rod.return_map_points`, or with another law."""
+    """One increment of the rod's law at many points, as `return_map.flow_points`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
 
 
 def solid_points(law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray) -> bool:
-    """One increment of the law at many points, as in `solid.return_map_points`, or with another law."""
+    """`rod_points` with all six stresses; shapes of `de` (points, 6), of C (points, 6, 6)."""
     raise NotImplementedError("only compiled loops call it")
 
 
@@ -46,12 +46,21 @@ def _rod_points(
     law: Any, old: Any, de: Any, new: Any, tangent: Any, with_tangent: Any, count: Any
 ) -> Callable[..., bool]:
     if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, de, new, tangent, with_tangent, count: rod.return_map_points(
-            law, old, de, new, tangent, with_tangent, count
+        return lambda law, old, de, new, tangent, with_tangent, count: return_map.flow_points(
+            law, ROD, old, de, new, tangent, with_tangent, count
         )
     if law.instance_class is OwnPoints:
         return lambda law, old, de, new, tangent, with_tangent, count: own_points(law, old, de, new, tangent, count)
-    return lambda law, old, de, new, tangent, with_tangent, count: parts_points(law, old, de, new, tangent, count)
+    return lambda law, old, de, new, tangent, with_tangent, count: parts_points(law, ROD, old, de, new, tangent, count)
+
+
+@overload(solid_points, strict=False)
+def _solid_points(law: Any, old: Any, de: Any, new: Any, C: Any, count: Any) -> Callable[..., bool]:
+    if not isinstance(law, types.BaseNamedTuple):
+        return lambda law, old, de, new, C, count: return_map.flow_points(
+            law, SOLID, old, de.T, new, C.reshape((-1, 36)).T, True, count
+        )
+    return lambda law, old, de, new, C, count: parts_points(law, SOLID, old, de.T, new, C.reshape((-1, 36)).T, count)
 
 
 @njit(**KERNEL)
@@ -65,31 +74,38 @@ def own_points(
 
 @njit(**KERNEL)
 def parts_points(
-    law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+    law: Parts,
+    components: Components,
+    old: np.ndarray,
+    de: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+    count: np.ndarray,
 ) -> bool:
     """One increment at many points: of those whose back stresses saturate several at a time, else one by one."""
-    together = applies(law)
-    if together and flow_points(law, ROD, old, de, new, tangent, count):
+    together, n = back_stresses.applies(law), len(components)
+    if together and back_stresses.flow_points(law, components, old, de, new, tangent, True, count):
         return True
-    good, c = True, np.empty((3, 3))
+    good, e, C = True, np.empty(n), np.empty((n, n))
     for k in range(old.shape[0]):
         if together and count[k] >= 0:
             continue
-        count[k] = rod_map(law, old[k], de[0, k], de[1, k], de[2, k], new[k], c)
+        for i in range(n):
+            e[i] = de[i, k]
+        count[k] = point_map(law, old[k], e, new[k], C)
         good = good and count[k] >= 0
-        for i in range(3):
-            for j in range(3):
-                tangent[3 * i + j, k] = c[i, j]
+        for i in range(n * n):
+            tangent[i, k] = C[i // n, i % n]
     return good
 
 
 @njit(**KERNEL)
-def rod_map(law: Parts, old: np.ndarray, e11: float, g12: float, g13: float, new: np.ndarray, C: np.ndarray) -> int:
-    """`increment.advance` of a rod's point, in closed form where it only creeps."""
+def point_map(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
+    """`increment.advance` of a point, in closed form where one of the rod only creeps."""
     count = -1
-    if law.viscous[TIME] > 0.0 and law.plastic[SPIN] == 0.0:
-        count = without_yield(law, old, (e11, g12, g13), new, C)
-    return count if count >= 0 else advance(law, old, np.array([e11, g12, g13]), new, C)
+    if len(de) == len(ROD) and law.viscous[TIME] > 0.0 and law.plastic[SPIN] == 0.0:
+        count = without_yield(law, old, de, new, C)
+    return count if count >= 0 else advance(law, old, de, new, C)
 
 
 @njit(**KERNEL)
@@ -112,35 +128,3 @@ def advance_solids(
 ) -> bool:
     """`solid_points` from Python."""
     return solid_points(law, old, de, new, C, count)
-
-
-@overload(solid_points, strict=False)
-def _solid_points(law: Any, old: Any, de: Any, new: Any, C: Any, count: Any) -> Callable[..., bool]:
-    if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, de, new, C, count: solid.return_map_points(law, old, de, new, C, count)
-    return lambda law, old, de, new, C, count: parts_solids(law, old, de, new, C, count)
-
-
-@njit(**KERNEL)
-def parts_solids(
-    law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
-) -> bool:
-    """`parts_points` with all six stresses."""
-    together, good = applies(law), True
-    if together:
-        strain, rows = np.empty((6, len(old))), np.empty((36, len(old)))
-        for k in range(len(old)):
-            for i in range(6):
-                strain[i, k] = de[k, i]
-        solved = flow_points(law, SOLID, old, strain, new, rows, count)
-        for k in range(len(old)):
-            for i in range(6):
-                for j in range(6):
-                    C[k, i, j] = rows[6 * i + j, k]
-        if solved:
-            return True
-    for k in range(len(old)):
-        if not together or count[k] < 0:
-            count[k] = advance(law, old[k], de[k], new[k], C[k])
-            good = good and count[k] >= 0
-    return good

@@ -27,9 +27,9 @@ from coilset.model.material.law.functions import (
     inside_table,
 )
 from coilset.model.material.law.parts import Parts, saturation
+from coilset.model.material.point.groups import active
+from coilset.model.material.point.groups import inner as inner_of_rod
 from coilset.model.material.point.local import FAILED, TOO_HOT, yield_crossing
-from coilset.model.material.point.rod import active
-from coilset.model.material.point.rod import inner as inner_of_rod
 from coilset.model.material.point.spin import Crossing, crossing_of_spin, spun
 from coilset.model.material.point.stage import (
     BACK,
@@ -70,10 +70,10 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
 
     Args:
         law: Parts.
-        old: the point's state at the start, as `rod` or `solid` have it; behind b* the temperature, K, where the point
+        old: the point's state at the start, as `groups` has it; behind b* the temperature, K, where the point
             has its own, the equivalent creep strain, where the material creeps, and all back stresses but the last, of
             which the columns of B have the sum. Not written.
-        de: strain increment, shape (3,) as in `rod` or (6,) as in `solid`, engineering shear strains, thermal strain
+        de: strain increment, shape (3,) or (6,), engineering shear strains, thermal strain
             included where the material creeps.
         new: the state at the end; written.
         C: dσ/dε, shape (3, 3) or (6, 6), N/mm²; written.

@@ -1,8 +1,5 @@
 """The local problem of `local` at several points at a time, in loops without branches.
 
-The fast path of the law is three files: `local`, the two equations of a point; this one, which solves them at many
-points; `rod`, the stresses of a rod's points from it (`solid`: all six stresses).
-
 Points are processed in groups. All points of a group get an elastic trial; those that flow are collected, and their
 local problems are solved together. A row holds one quantity of all points of a group, so that vector registers take
 neighbouring points. The loops are short: a processor works ahead in those that follow, while the terms of one wait for
@@ -51,7 +48,7 @@ from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 # below it with the weight of the one above, 0 without.
 Points = namedtuple("Points", "first size temperature E G row weight")
 
-GROUP = 64  # of them at most
+GROUP = 64
 NEWTON = 8  # iterations at most
 RUNNING, CONVERGED, LEFT_OUT = 0.0, 1.0, 2.0  # how far a point has come in Newton's method
 
@@ -75,7 +72,7 @@ GROUP_A = KAPPA + 2
 GROUP_C = GROUP_A + 4
 TURN_A = GROUP_C + 4
 TURN_C = TURN_A + 6
-FORM = TURN_C + 6  # rows of the rod or of the full stress state, the given ones first
+FORM = TURN_C + 6  # rows by component, see `groups`
 # In rows whose quantity is not needed at the same time: whether the elastic trial leaves the surface; ζ at the end and
 # the Jacobian over its determinant.
 FLOWS = B
@@ -114,44 +111,8 @@ def alone(p: np.ndarray, of: Points) -> bool:
 
 
 @njit(**INLINE)
-def gather(size: int, given: int, place: np.ndarray, w: np.ndarray) -> tuple[int, int]:
-    """Move the points of a group that flow to the front, and repeat the last up to whole vectors.
-
-    Args:
-        size: number of points of the group.
-        given: rows of the form that are given.
-        place: written, the places of those that flow.
-        w: the rows.
-
-    Returns:
-        How many flow, and how many these are in whole vectors.
-    """
-    flow = 0
-    for k in range(size):
-        if w[FLOWS, k] != 0.0:
-            place[flow] = k
-            flow += 1
-    whole = min((flow + 7) // 8 * 8, GROUP)
-    if flow > 0:
-        _move(WORK, PRODUCTS, flow, size, whole, place, w)
-        _move(FORM, FORM + given, flow, size, whole, place, w)
-    return flow, whole
-
-
-@njit(**INLINE)
-def _move(first: int, last: int, flow: int, size: int, whole: int, place: np.ndarray, w: np.ndarray) -> None:
-    if flow < size:
-        for j in range(flow):
-            for i in range(first, last):
-                w[i, j] = w[i, place[j]]
-    for i in range(first, last):
-        for j in range(flow, whole):
-            w[i, j] = w[i, flow - 1]
-
-
-@njit(**INLINE)
 def solve_rows(p: np.ndarray, of: Points, ca: float, flow: int, whole: int, w: np.ndarray) -> None:
-    """Solve the local problem of points with given rows up to BETA; see `local_of`.
+    """Solve the local problem of points with given rows up to BETA.
 
     `ENDED` is the number of each point's local iterations, -1 if there was no convergence.
 
@@ -159,7 +120,7 @@ def solve_rows(p: np.ndarray, of: Points, ca: float, flow: int, whole: int, w: n
         p: parameter array of the law.
         of: the group of points.
         ca: modulus of the components of group a; that of group c is 2G.
-        flow, whole: as `gather` returns them.
+        flow, whole: as `groups.next_group` returns them.
         w: the rows.
     """
     left_out, cc = alone(p, of), 2.0 * of.G
@@ -185,29 +146,12 @@ def _solve_alone(p: np.ndarray, of: Points, ca: float, cc: float, flow: int, w: 
 
 @njit(**INLINE)
 def _keep(local: Local, w: np.ndarray, j: int) -> None:
-    """Write what `local_of` reads, and the number of iterations."""
+    """Write the solution of a point, and the number of iterations."""
     w[ENDED, j], w[B, j], w[LAST_ZETA, j], w[ZETA + 1, j] = local.iterations, local.b, local.zeta, local.dzeta
     _keep_turn(local.a, w, TURN_A, j)
     _keep_turn(local.c, w, TURN_C, j)
     w[JACOBIAN, j], w[JACOBIAN + 1, j] = local.r1b, local.r1l
     w[JACOBIAN + 2, j], w[JACOBIAN + 3, j] = local.r2b, local.r2l
-
-
-@njit(**INLINE)
-def local_of(w: np.ndarray, j: int) -> Local:
-    """The solution of a point."""
-    return Local(
-        1,
-        w[B, j],
-        w[LAST_ZETA, j],
-        w[ZETA + 1, j],
-        _turn(w, TURN_A, j),
-        _turn(w, TURN_C, j),
-        w[JACOBIAN, j],
-        w[JACOBIAN + 1, j],
-        w[JACOBIAN + 2, j],
-        w[JACOBIAN + 3, j],
-    )
 
 
 @njit(**INLINE)
@@ -363,7 +307,8 @@ def _keep_turn(t: Turn, w: np.ndarray, row: int, j: int) -> None:
 
 
 @njit(**INLINE)
-def _turn(w: np.ndarray, row: int, j: int) -> Turn:
+def turn_of(w: np.ndarray, row: int, j: int) -> Turn:
+    """How a group turns, from the rows that begin at one."""
     return Turn(w[row, j], w[row + 1, j], w[row + 2, j], w[row + 3, j], w[row + 4, j], w[row + 5, j])
 
 
@@ -372,7 +317,7 @@ def _correct(ca: float, cc: float, size: int, w: np.ndarray) -> None:
     """One correction by Newton's method; keeps what the solution is made of, if it is the last."""
     for j in range(size):
         b, k2, zeta, dzeta = w[B, j], w[END, j], w[ZETA, j], w[ZETA + 1, j]
-        a, c, start = _turn(w, TURN_A, j), _turn(w, TURN_C, j), start_of(ca, cc, w, j)
+        a, c, start = turn_of(w, TURN_A, j), turn_of(w, TURN_C, j), start_of(ca, cc, w, j)
         values, middle = (k2, w[END + 1, j], 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, zeta, dzeta, 0.0, 0.0)
         at = equations(start, values, middle, a, c, b)
         newton = correction(at)

@@ -5,7 +5,6 @@ import numpy as np
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.material.law.functions import CHANGE
 from coilset.model.material.law.law import Law
-from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.choice import advance_points, advance_solids
 from coilset.model.material.point.local import TOO_HOT
 
@@ -70,22 +69,15 @@ def update(
         increments = increments - law.thermal_strain(start, end) * (
             np.arange(components) < (1 if components == 3 else 3)
         )
-    new, tangent, count = _advance(point_law, state, increments)
-    refuse(law, count)
-    return new, tangent, count
-
-
-def _advance(
-    point_law: np.ndarray | Parts, state: np.ndarray, increments: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    points, components = increments.shape
     new, count = np.empty_like(state), np.empty(points, dtype=np.int64)
     if components == 3:
         rows = np.empty((9, points))
         advance_points(point_law, state, increments.T.copy(), new, rows, True, count)
-        return new, rows.T.reshape(points, 3, 3), count
-    tangent = np.empty((points, components, components))
-    advance_solids(point_law, state, increments, new, tangent, count)
+        tangent = rows.T.reshape(points, 3, 3)
+    else:
+        tangent = np.empty((points, 6, 6))
+        advance_solids(point_law, state, increments, new, tangent, count)
+    refuse(law, count)
     return new, tangent, count
 
 

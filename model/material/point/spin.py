@@ -24,8 +24,8 @@ the surface. The back stress, (√3/2 B11, B12, B13), rotates by √3/2 |Δγ|, 
 import math
 from collections import namedtuple
 
+from coilset.model.material.point.groups import Vector, active, add, inner, scaled
 from coilset.model.material.point.local import yield_crossing
-from coilset.model.material.point.rod import Vector, active, add, inner, scaled
 from coilset.model.runtime.kernels import INLINE, njit
 
 Columns = tuple[Vector, Vector, Vector]

@@ -36,7 +36,7 @@ import numpy as np
 
 from coilset.model.material.creep.flow import Creep, creep_strain, crept
 from coilset.model.material.law.functions import EXPONENT, functions
-from coilset.model.material.law.parts import saturation
+from coilset.model.material.law.parts import MOST_TERMS, saturation
 from coilset.model.material.point.overstress import ROOT, of_work
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
@@ -56,7 +56,7 @@ Change = namedtuple("Change", "strain gain l q chi")
 Residual = namedtuple("Residual", "flow work length creep")
 NO_CREEP = Creep(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
-MOST, MOST_TERMS = 4, 8  # unknowns; back stresses
+MOST = 4  # unknowns
 # Rows of a point's numbers, and of their slopes by the strains: ē; the stage's creep strain χ T; b and u, in the places
 # WORK and CREPT; the Bᵢ from BACK on.
 ELASTIC, CREEP, SCALARS, BACK = range(4)
