@@ -673,4 +673,4 @@ def material(name: str | Path) -> Material:
     'voce'
     """
     law = library.load(name)
-    return Material(law.name, law.source, law.E, law.G, law.nu, law)
+    return Material(law.name, law.data.source, law.E, law.G, law.nu, law)

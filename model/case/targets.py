@@ -94,7 +94,7 @@ def check_times(case: Case, law: Law) -> None:
         if not isinstance(phase, TimePhase):
             continue
         word = "heat" if phase.heat else "hold"
-        if law.creep is None and case.heat:
+        if law.data.creep is None and case.heat:
             raise InputError(
                 f"'{law.name}' does not creep; to let heat flow give a target and seconds, as in "
                 "{to: {force: 0}, seconds: 600}",
@@ -106,7 +106,7 @@ def check_times(case: Case, law: Law) -> None:
                 "heat, or a material without heating",
                 f"loading.{number}.{word}",
             )
-        if law.creep is None and (phase.heat or law.data.rate is None):
+        if law.data.creep is None and (phase.heat or law.data.rate is None):
             raise InputError(
                 f"'{law.name}' does not creep, so that time changes nothing; give a material with creep, "
                 "or leave it out",

@@ -161,7 +161,7 @@ def relief_intervals(
     """
     if relief is None:
         return ()
-    if law.creep is None:
+    if law.data.creep is None:
         raise InputError(
             f"'{law.name}' does not creep, so that time relieves nothing; give a material with creep",
             "spring.relieved",
@@ -171,7 +171,7 @@ def relief_intervals(
     except InputError as error:
         raise InputError(error.problem, "spring.relieved.temperature") from None
     hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, count + 1) * np.log1p(1.0 / FIRST))
-    creep = CreepLaw(law.creep, law.parts(_cold(parameters)), rate=law.data.rate)
+    creep = CreepLaw(law.data.creep, law.parts(_cold(parameters)), rate=law.data.rate)
     clocks = [creep.clock(0.0, temperature)]
     for time, at in (*((float(time), warm) for time in hours), (float(hours[-1]), temperature)):
         clocks.append(creep.clock(time, at, clocks[-1]))

@@ -8,8 +8,7 @@ it. So an evaluation keeps one element's at a time, and a step's end finds them 
 import numpy as np
 
 from coilset.model.body.state import Field, State, Where
-from coilset.model.material.creep.in_time import RateLaw
-from coilset.model.material.creep.law import CreepLaw
+from coilset.model.material.creep.law import RateLaw
 from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
 from coilset.model.section.kinds import Sections
 
@@ -29,7 +28,7 @@ class SectionStates:
     """
 
     def __init__(
-        self, sections: Sections, state: State, strain: Field, in_time: CreepLaw | RateLaw | None, temperature: float
+        self, sections: Sections, state: State, strain: Field, in_time: RateLaw | None, temperature: float
     ) -> None:
         self._sections, self._strain, cells = sections, strain, len(sections.radius)
         passing = sections.passing if cells > KEPT else ()

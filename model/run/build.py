@@ -191,12 +191,12 @@ def build_setup(
         ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts
     )
     limits = Limits(
-        law.validity.plastic_work,
+        law.data.validity.plastic_work,
         case_strength(case, spring),
         PENETRATION * 2.0 * least_radius,
         case.steps_error,
         *case_allowed(case, spring),
-        creep=law.creep.tests if law.creep else None,
+        creep=law.data.creep.tests if law.data.creep else None,
     )
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
     elastic = case_elastic(case, law)

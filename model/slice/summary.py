@@ -48,7 +48,7 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "turn_after": analysis.body.turn,
         "inside_factor": result.inside_factor,
         "plastic_work_max_N_per_mm2": max(float(shot.work.max()) for shot in result.snapshots),
-        "plastic_work_known_to_N_per_mm2": analysis.law.validity.plastic_work,
+        "plastic_work_known_to_N_per_mm2": analysis.law.data.validity.plastic_work,
         "warnings": [asdict(warning) for warning in slice_warnings(analysis)],
         "loaded": at_surface(analysis, loaded),
         "released": at_surface(analysis, last) if released else None,
@@ -57,7 +57,10 @@ def summarise(analysis: SliceAnalysis) -> dict:
 
 def slice_warnings(analysis: SliceAnalysis) -> list[Warning]:
     """Warnings about the case, and about plastic work beyond the material's validity."""
-    found, limit = list(case_warnings(analysis.case, analysis.spring, analysis.law)), analysis.law.validity.plastic_work
+    found, limit = (
+        list(case_warnings(analysis.case, analysis.spring, analysis.law)),
+        analysis.law.data.validity.plastic_work,
+    )
     beyond = [shot for shot in analysis.result.snapshots if shot.work.max() > limit]
     if beyond:
         greatest = max(float(shot.work.max()) for shot in beyond)

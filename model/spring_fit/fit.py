@@ -182,7 +182,7 @@ def form_of(case: Case, name: str) -> Form:
     """The law of few constants of this name, with what a case's material says of other temperatures and of creep."""
     law = case_law(case, case.spring.build())
     temperature = case.temperature or law.reference_temperature
-    creep = None if law.creep is None else law.creep.model_dump(mode="json", exclude_none=True)
+    creep = None if law.data.creep is None else law.data.creep.model_dump(mode="json", exclude_none=True)
     return Form(name, law.nu, temperature, tuple(softening(case, law, temperature)), creep)
 
 

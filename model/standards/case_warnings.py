@@ -60,7 +60,7 @@ def _estimated(case: Case) -> Iterator[Warning]:
 
 
 def _warm(case: Case, law: Law) -> Iterator[Warning]:
-    tested = law.validity.temperature
+    tested = law.data.validity.temperature
     reached = [case.temperature, *(phase.temperature for phase in case.loading if isinstance(phase, TimePhase))]
     other = [one for one in reached if one is not None and one != tested]
     if tested is not None and other:

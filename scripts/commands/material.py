@@ -46,7 +46,9 @@ def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     law = library.load(material)
     picture = files_to_write(out, law.name, force, "functions.png")[0]
     console = Console()
-    console.print(f"[bold]{law.name}[/]: {law.description}\nsource: {law.source}\nvalid: {law.validity.remark}")
+    console.print(
+        f"[bold]{law.name}[/]: {law.data.description}\nsource: {law.data.source}\nvalid: {law.data.validity.remark}"
+    )
     console.print(_constants(law))
     write_picture(figures.material_functions(law), picture, console)
 

@@ -63,7 +63,7 @@ def solve(
         interrupt = stack.enter_context(Interrupt(comm, output.say))
         with naming(case_file):
             analysis = Analysis(case, comm, threads=threads or usual(comm.size))
-        if analysis.law.creep is not None:
+        if analysis.law.data.creep is not None:
             compile_first(stages=("creep",))
         on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
         on_first_rank(comm, lambda: stack.enter_context(run_log(folder, goes_on=resume)))

@@ -15,7 +15,7 @@ from coilset.model.material.identification import creep_fit
 from coilset.model.material.identification.relaxation_tests import Readings, read_relaxation
 from coilset.model.material.identification.relaxing import loss
 from coilset.model.material.law.file import Creep
-from coilset.model.material.point.choice import rod_map
+from coilset.model.material.point.choice import point_map
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.time import creep_fit as studies
 
@@ -71,7 +71,7 @@ def test_loss_of_a_wire_in_tension(form, constants):
     clock = creep.clock(0.0, temperature)
     for time in np.geomspace(1e-12, 100.0, 300):
         after = creep.clock(time, temperature, clock)
-        assert rod_map(creep.over(clock, after), state, 0.0, 0.0, 0.0, new, C) >= 0
+        assert point_map(creep.over(clock, after), state, np.zeros(3), new, C) >= 0
         state[:], clock = new, after
     tests = Readings("tension", np.array([stress]), np.array([temperature]), np.array([100.0]), np.zeros(1))
     found = exact(law, tests, constants, form).loss[0]
@@ -146,7 +146,7 @@ def test_the_command(tmp_path):
     assert "activation_energy" in done.output
     data = yaml.safe_load((tmp_path / "mine.yaml").read_text(encoding="utf-8"))
     assert data["creep"]["exponent"] == pytest.approx(6.0, abs=0.3)
-    assert library.load(tmp_path / "mine.yaml").creep.activation_energy == pytest.approx(150000.0, rel=0.1)
+    assert library.load(tmp_path / "mine.yaml").data.creep.activation_energy == pytest.approx(150000.0, rel=0.1)
     assert (tmp_path / "mine.png").stat().st_size > 20_000
     assert isinstance(CliRunner().invoke(app, arguments).exception, InputError)
 
@@ -228,7 +228,7 @@ def test_the_command_takes_load_losses_of_a_spring(tmp_path):
     done = CliRunner().invoke(app, arguments)
     assert done.exit_code == 0, done.output
     assert "as many readings as constants; the intervals are those of an error of 0.5 % of the load" in done.output
-    known = library.load(tmp_path / "mine.yaml").creep.tests
+    known = library.load(tmp_path / "mine.yaml").data.creep.tests
     shear = np.array([471.0, 589.0]) * 8.0 * 32.0 / (np.pi * 4.0**3)
     assert known.stress == pytest.approx(np.sqrt(3.0) * shear, rel=1e-4)
     assert known.hours == (48.0, 48.0)

@@ -27,8 +27,8 @@ def test_every_material_says_what_it_is(name):
     law = library.load(name)
     assert law.name == name
     assert law.data.units == "N, mm, K"
-    assert min(len(text) for text in (law.description, law.source, law.validity.remark)) > 10
-    assert law.validity.plastic_work > 0
+    assert min(len(text) for text in (law.data.description, law.data.source, law.data.validity.remark)) > 10
+    assert law.data.validity.plastic_work > 0
     state, _, count = points.update(law, points.initial_state(law, 1), np.array([[0.01, 0.01, 0]]))
     assert np.isfinite(state).all()
     assert (count[0] == 0) == (name == "elastic")

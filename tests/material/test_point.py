@@ -88,7 +88,7 @@ class Point:
         self.law, self.n, self.hours, self.temperature = law, n, 0.0, COLD
         self.in_time = law_in_time(law, law.parameters())
         self.clock = self.in_time.clock(0.0, COLD) if self.in_time else None
-        own = [COLD] * bool(law.creep or law.is_adiabatic) + [CREPT] * bool(law.creep)
+        own = [COLD] * bool(law.data.creep or law.is_adiabatic) + [CREPT] * bool(law.data.creep)
         self.state = np.concatenate([np.zeros(2 * n + 1), own, np.zeros(n * max(law.n_terms - 1, 0))])
 
     def over(self, seconds, warming=0.0):
@@ -98,7 +98,7 @@ class Point:
         if self.in_time:
             after = self.in_time.clock(self.hours, self.temperature, self.clock)
             law, self.clock = self.in_time.over(self.clock, after), after
-        if not self.law.creep and not self.law.is_adiabatic:
+        if not self.law.data.creep and not self.law.is_adiabatic:
             law = law._replace(plastic=law.plastic.copy())
             law.plastic[[CHANGE, TEMPERATURE]] = warming, self.temperature
         return law
@@ -125,7 +125,7 @@ def path(n, hold):
 
 def errors(law, n, hold, numbers):
     """Of the stress at the ends of the pieces, over the greatest."""
-    segments, rates, exact = path(n, hold), PointRates(law, n == 3, COLD, CREPT if law.creep else 0.0), []
+    segments, rates, exact = path(n, hold), PointRates(law, n == 3, COLD, CREPT if law.data.creep else 0.0), []
     for segment in segments:
         rates.follow(segment)
         exact.append(rates.stress.copy())

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from coilset.model.base.errors import InputError
-from coilset.model.material.creep.in_time import RateLaw
+from coilset.model.material.creep.law import RateLaw
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.increment import advance as advance_point

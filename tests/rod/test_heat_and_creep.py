@@ -90,7 +90,7 @@ def test_a_section_that_grows_evenly_has_no_stress(files, kind):
     law = library.load(files["elastic creeps"])
     place = straight(1)._replace(curvature=np.full((1, 2), 0.05))
     sections = make_sections(kind, law, law.parameters(COLD), polar(3, 8), np.array([2.5]), place, COLD)
-    creep = CreepLaw(law.creep, law.parts(law.parameters(COLD)))
+    creep = CreepLaw(law.data.creep, law.parts(law.parameters(COLD)))
     start = sections.initial_state() | {"strain": np.zeros((1, 2, 6)), "clock": creep.clock(0.0, COLD)}
     growth, s, D, stress = law.thermal_strain(COLD, WARM), np.empty((1, 2, 6)), np.empty((1, 2, 6, 6)), []
     for axis in (0.0, growth):

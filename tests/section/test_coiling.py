@@ -58,7 +58,7 @@ def test_an_elastic_wire_keeps_no_shape():
 
 def relief(law, hours, temperature, intervals):
     """The law over the intervals of a relief at constant temperature."""
-    creep = CreepLaw(law.creep, law.parts())
+    creep = CreepLaw(law.data.creep, law.parts())
     clocks = [creep.clock(0.0, 293.15), creep.clock(0.0, temperature)]
     clocks += [creep.clock(t, temperature) for t in hours * np.linspace(0.0, 1.0, intervals + 1)[1:] ** 4]
     for clock in clocks[2:]:
@@ -72,10 +72,10 @@ def test_relief_against_fibres_that_creep():
     row = np.append(initial_state(law, 1), [[293.15, 0.0]], axis=1)
     ours = coil(law.parameters(), rule, RADIUS, 0.05, 0.0, row, curved=False, relief=relief(law, hours, warm, 24))
     tight = coiled_with(law, rule, row, ours.turned)
-    y, w, k = RADIUS * rule.points[:, 0], rule.weights, law.creep
+    y, w, k = RADIUS * rule.points[:, 0], rule.weights, law.data.creep
     part = (warm - 293.15) / 280.0
     E = [2.0 * 1.29 * G for G in (79000.0, 79000.0 - part * 7900.0)]
-    worth = CreepLaw(law.creep, law.parts()).worth(1.0, warm, warm)
+    worth = CreepLaw(law.data.creep, law.parts()).worth(1.0, warm, warm)
 
     def rates(_, state):
         s, c = state.reshape(2, -1)

@@ -57,7 +57,7 @@ class Section:
             np.array([R]),
             straight(1) if placement is None else placement,
         )
-        self.creep = CreepLaw(law.creep, law.parts())
+        self.creep = CreepLaw(law.data.creep, law.parts())
         self.state = self.sections.initial_state() | {
             "strain": np.zeros((1, 2, 6)),
             "clock": self.creep.clock(0, 293.15),

@@ -200,8 +200,8 @@ def test_the_command_fits_whole_rods_to_lengths(tmp_path):
     assert done.exit_code == 0, done.output
     law = library.load(tmp_path / "mine.yaml")
     assert law.yield_stress == pytest.approx(500.0, rel=0.02)
-    assert "coilset material fit --spring: lengths" in law.source
-    assert "95 % intervals: yield_stress" in law.validity.remark
+    assert "coilset material fit --spring: lengths" in law.data.source
+    assert "95 % intervals: yield_stress" in law.data.validity.remark
     assert (tmp_path / "fit.png").stat().st_size > 20_000
     assert law.temperatures == (293.15, 473.15)  # the standard's slope of G, 0.25 ‰ per kelvin
     assert law.moduli(473.15)[1] / 80000.0 == pytest.approx(1.0 - 2.5e-4 * 180.0)

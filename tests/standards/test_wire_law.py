@@ -41,12 +41,12 @@ def test_validity_ends_with_the_uniform_strain():
     peak = stress.argmax()
     # ∫ σ dεp up to the maximum force, with the true stress σ = s exp(εp) (1 + …)
     true = stress[:peak] * np.exp(plastic[:peak]) / (1 - law.nu * stress[:peak] / law.E) ** 2
-    assert law.validity.plastic_work == pytest.approx(np.trapezoid(true, plastic[:peak]), rel=2e-2)
+    assert law.data.validity.plastic_work == pytest.approx(np.trapezoid(true, plastic[:peak]), rel=2e-2)
 
 
 def test_law_is_marked_as_an_estimate():
     law = wire_law("EN 10270-1 SH", 3.0)
-    assert law.validity.remark.startswith("estimate")
+    assert law.data.validity.remark.startswith("estimate")
     assert (law.G, round(law.E)) == (81500.0, 206000)
     assert law.name == "EN 10270-1 SH, 3 mm"
 

@@ -50,7 +50,7 @@ class PointRates:
     """
 
     def __init__(self, law: Law, rod: bool, temperature: float, crept: float = 0.0) -> None:
-        self.law, self.rod, self.creep, self.rate = law, rod, law.creep, law.data.rate
+        self.law, self.rod, self.creep, self.rate = law, rod, law.data.creep, law.data.rate
         self.known = np.array(law.temperatures)
         self.terms = max(law.n_terms, 1)
         self.y = np.zeros(6 * (1 + self.terms) + 3)

@@ -34,7 +34,7 @@ def material_curve(results: Run) -> Panel | None:
         f"{finding}. Shear stress over shear strain of one point, there, back, and again.",
         [curve(100.0 * history.strain[:, 1], history.stress[:, 1], 0, showlegend=False)],
         {"xaxis": axis("shear strain, %"), "yaxis": axis("shear stress, MPa")},
-        note=law.description + ". Source: " + law.source,
+        note=law.data.description + ". Source: " + law.data.source,
     )
 
 

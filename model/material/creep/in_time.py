@@ -4,39 +4,17 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from coilset.model.material.creep.law import CREEP_COLUMNS, HOURS, TEMPERATURE, CreepLaw, at_rate
-from coilset.model.material.law.file import RateDependence
+from coilset.model.material.creep.law import CREEP_COLUMNS, TEMPERATURE, CreepLaw, RateLaw
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.points import initial_state
 
 
-class RateLaw:
-    """Yield that depends on the rate, see `coilset.model.material.point.overstress`.
-
-    Args:
-        data: the checked entries.
-        parts: Parts of the law, `Law.parts()`.
-    """
-
-    def __init__(self, data: RateDependence, parts: Parts) -> None:
-        self.data, self._parts = data, parts
-
-    def clock(self, hours: float, temperature: float, before: np.ndarray | None = None) -> np.ndarray:
-        """The clock, shape (3,), as `CreepLaw.clock`; temperature has no effect on the rate."""
-        return np.array([hours, temperature, 0.0])
-
-    def over(self, start: np.ndarray, end: np.ndarray) -> Parts:
-        """The law over the time between two clocks."""
-        plastic = at_rate(self.data, self._parts.plastic, float(end[HOURS] - start[HOURS]))
-        return self._parts._replace(plastic=plastic)
-
-
-def law_in_time(law: Law, plastic: np.ndarray) -> CreepLaw | RateLaw | None:
+def law_in_time(law: Law, plastic: np.ndarray) -> RateLaw | None:
     """What the material does in time: creep, rate-dependent yield, or nothing."""
     parts = law.parts(plastic)
-    if law.creep:
-        return CreepLaw(law.creep, parts, law.is_adiabatic, law.data.rate)
+    if law.data.creep:
+        return CreepLaw(law.data.creep, parts, law.is_adiabatic, law.data.rate)
     return RateLaw(law.data.rate, parts) if law.data.rate else None
 
 
@@ -61,12 +39,12 @@ class LawOverTime:
     def columns(self, back_stress: tuple[str, ...]) -> tuple[str, ...]:
         """Names of what the law adds to the columns of a point's state; `back_stress` names one back stress's."""
         further = tuple(f"{name}_{term}" for term in range(1, self._law.n_terms) for name in back_stress)
-        return (CREEP_COLUMNS if self._law.creep else ()) + further
+        return (CREEP_COLUMNS if self._law.data.creep else ()) + further
 
     def unstressed(self, components: int) -> np.ndarray:
         """The row of an unstressed point of 3 or 6 stresses, shape (1, columns)."""
         row = initial_state(self._law, 1, components, self._temperature)
-        if self._law.creep is None:
+        if self._law.data.creep is None:
             return row
         start = self._law.reference_temperature if self._temperature is None else self._temperature
         own, more = 2 * components + 1, components * max(self._law.n_terms - 1, 0)
@@ -87,9 +65,7 @@ class LawOverTime:
             return 0.0
         return self._law.thermal_strain(*(float(state["clock"][TEMPERATURE]) for state in (start, trial)))
 
-    def _while_time_passes(
-        self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]
-    ) -> CreepLaw | RateLaw | None:
+    def _while_time_passes(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> RateLaw | None:
         """The law in time, or None if there is none or no time passes."""
         stands = "clock" not in trial or np.array_equal(start["clock"], trial["clock"])
         return None if stands else self.in_time

@@ -29,7 +29,37 @@ LEAST_REMOVED, SLOWING, STEADY = 0.25, 1.8, 0.2
 CREEP_COLUMNS = ("T", "c")  # what creep adds to a point's state: temperature, K, and equivalent creep strain
 
 
-class CreepLaw:
+class RateLaw:
+    """Yield that depends on the rate, see `coilset.model.material.point.overstress`, and the clock of what takes time.
+
+    Args:
+        rate: the checked entries; None: yield does not depend on the rate.
+        parts: Parts of the law, `Law.parts()`.
+    """
+
+    def __init__(self, rate: RateDependence | None, parts: Parts) -> None:
+        self._rate, self._parts = rate, parts
+
+    def _passed(self, hours: float, start: float, end: float) -> float:
+        """What passes of the equivalent hours, of which nothing here depends."""
+        return 0.0
+
+    def clock(self, hours: float, temperature: float, before: np.ndarray | None = None) -> np.ndarray:
+        """The clock, shape (3,), at a time and temperature; the temperature has changed linearly since `before`."""
+        if before is None:
+            return np.array([hours, temperature, 0.0])
+        worth = self._passed(float(hours - before[HOURS]), float(before[TEMPERATURE]), temperature)
+        return np.array([hours, temperature, before[WORTH] + worth])
+
+    def over(self, start: np.ndarray, end: np.ndarray) -> Parts:
+        """The law over the time between two clocks."""
+        plastic, hours = self._parts.plastic.copy(), float(end[HOURS] - start[HOURS])
+        if self._rate and hours > 0.0:
+            plastic[RATE] = 1.0 / (self._rate.reference_rate * SECONDS * hours)
+        return self._parts._replace(plastic=plastic)
+
+
+class CreepLaw(RateLaw):
     """Creep of a material.
 
     Args:
@@ -40,8 +70,13 @@ class CreepLaw:
     """
 
     def __init__(self, data: Creep, parts: Parts, own: bool = False, rate: RateDependence | None = None) -> None:
-        self.data, self.own, self._parts, self._rate = data, own, parts, rate
+        super().__init__(rate, parts)
+        self.data, self.own = data, own
         self._gauss, self._weights = np.polynomial.legendre.leggauss(12)
+
+    def _passed(self, hours: float, start: float, end: float) -> float:
+        """Equivalent hours, not yet scaled where each point has a temperature of its own."""
+        return hours if self.own else self.worth(hours, start, end)
 
     def worth(self, hours: float, start: float, end: float) -> float:
         """Equivalent hours at T₀ of hours in which the temperature changes linearly between two values, K."""
@@ -50,14 +85,6 @@ class CreepLaw:
             -self.data.activation_energy / GAS_CONSTANT * (1.0 / temperatures - 1.0 / self.data.temperature)
         )
         return hours * 0.5 * float(self._weights @ factors)
-
-    def clock(self, hours: float, temperature: float, before: np.ndarray | None = None) -> np.ndarray:
-        """The clock, shape (3,), at a time and temperature; the temperature has changed linearly since `before`."""
-        if before is None:
-            return np.array([hours, temperature, 0.0])
-        passed = float(hours - before[HOURS])
-        worth = passed if self.own else self.worth(passed, float(before[TEMPERATURE]), temperature)
-        return np.array([hours, temperature, before[WORTH] + worth])
 
     def over(self, start: np.ndarray, end: np.ndarray) -> Parts:
         """The law over the time between two clocks."""
@@ -72,10 +99,7 @@ class CreepLaw:
         viscous = np.array(
             [time, power, form, speed, data.stress, exponent, end[TEMPERATURE], energy, data.temperature]
         )
-        hours, plastic = float(end[HOURS] - start[HOURS]), self._parts.plastic
-        if self._rate and hours > 0.0:
-            plastic = at_rate(self._rate, plastic, hours)
-        return self._parts._replace(plastic=plastic, viscous=viscous)
+        return super().over(start, end)._replace(viscous=viscous)
 
     def strain(self, stress: float, hours: float, temperature: float) -> float:
         """Equivalent creep strain after some hours of constant stress (N/mm²) and temperature (K)."""
@@ -107,10 +131,3 @@ class CreepLaw:
         data, x = self.data, stress / self.data.stress
         steeper = FORMS[data.form].factor(x)[1] if x > 0.0 else 1.0
         return data.exponent / (1.0 if data.hardening == "time" else data.time_exponent) * steeper
-
-
-def at_rate(data: RateDependence, plastic: np.ndarray, hours: float) -> np.ndarray:
-    """The parameter array of an increment that takes some hours."""
-    plastic = plastic.copy()
-    plastic[RATE] = 1.0 / (data.reference_rate * SECONDS * hours)
-    return plastic

@@ -77,7 +77,7 @@ class CreepFit:
         """Content of a material file: that of the law, with this creep."""
         creep = {"form": self.form, "hardening": self.hardening, **self.constants, "tests": self.range}
         data = self.law.data.model_dump(mode="json", exclude_none=True)
-        data |= {"name": name, "source": f"{self.law.source}; creep: {source}", "creep": creep}
+        data |= {"name": name, "source": f"{self.law.data.source}; creep: {source}", "creep": creep}
         MaterialFile.model_validate(data)
         return data
 

@@ -16,15 +16,11 @@ GREEK = {"eps": "ε", "gamma": "γ", "sigma": "σ", "tau": "τ"}
 SYMBOLS = {name: GREEK[name[:-2]] + name[-2:] for name in STRAINS["solid"] + STRESSES["solid"]}
 
 
-def _figure(width: float, height: float) -> Figure:
-    return Figure(figsize=(width, height), layout="constrained")
-
-
 def material_functions(law: Law) -> Figure:
     """k², ζ and 2Gκ over the plastic work b*, one line per temperature; figures 6.3 to 6.5 of the thesis for Ck 15."""
-    work = np.linspace(0.0, law.validity.plastic_work, 801)
+    work = np.linspace(0.0, law.data.validity.plastic_work, 801)
     with mpl.rc_context(STYLE):
-        figure = _figure(10.5, 3.7)
+        figure = Figure(figsize=(10.5, 3.7), layout="constrained")
         axes = figure.subplots(1, 3)
         for temperature in law.temperatures:
             G = dict(law.constants(temperature))["G"][0]
@@ -41,7 +37,9 @@ def material_functions(law: Law) -> Figure:
             place.set_xlim(0, work[-1])
             place.grid(lw=0.3)
         axes[0].legend(title=law.name if np.isfinite(k2).all() else f"{law.name}: never yields")
-        figure.suptitle("\n".join([_grown(law, work[-1]), *textwrap.wrap(f"constants: {law.source}", 150)]), fontsize=9)
+        figure.suptitle(
+            "\n".join([_grown(law, work[-1]), *textwrap.wrap(f"constants: {law.data.source}", 150)]), fontsize=9
+        )
     return figure
 
 
@@ -59,7 +57,7 @@ def program(law: Law, run: Program, history: History) -> Figure:
     strains, stresses = STRAINS[history.form], STRESSES[history.form]
     moved = [i for i in range(len(strains)) if np.ptp(history.stress[:, i]) > 1e-3]
     with mpl.rc_context(STYLE):
-        figure = _figure(10.5, 4.0)
+        figure = Figure(figsize=(10.5, 4.0), layout="constrained")
         axes = figure.subplots(1, 3 if history.form == "rod" else 2)
         for i in moved:
             label = f"{SYMBOLS[stresses[i]]} over {SYMBOLS[strains[i]]}"
@@ -114,7 +112,7 @@ def _stress_plane(axes: Axes, law: Law, history: History) -> None:
 def fit(result: Fit, name: str) -> Figure:
     """Tests, the law fitted to them, and the residual; one column per test."""
     with mpl.rc_context(STYLE):
-        figure = _figure(3.4 * len(result.tests), 5.6)
+        figure = Figure(figsize=(3.4 * len(result.tests), 5.6), layout="constrained")
         axes = figure.subplots(2, len(result.tests), sharex="col", squeeze=False, height_ratios=(2, 1))
         for column, test, stress, scatter in zip(axes.T, result.tests, result.stress, result.scatter, strict=True):
             length = 100 * np.concatenate([[0.0], np.cumsum(np.abs(np.diff(test.strain, axis=0)).sum(axis=1))])

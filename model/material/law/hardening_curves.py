@@ -206,33 +206,28 @@ class Table(Strict):
         return sample(nodes, curve, curve.derivative())
 
     def _check(self, strain: np.ndarray, stress: np.ndarray) -> None:
-        file = self.file or ""
+        if problem := self._problem(strain, stress):
+            raise InputError(problem, "", self.file or "")
+
+    def _problem(self, strain: np.ndarray, stress: np.ndarray) -> str:
+        """What is wrong with the points from the last elastic one on."""
         if len(strain) < 2 or (strain[0] > 0.0 and self.strains == "plastic"):
-            raise InputError(
-                "a table needs a point at plastic strain 0, where yielding begins, and one beyond", "", file
-            )
+            return "a table needs a point at plastic strain 0, where yielding begins, and one beyond"
         if strain[0] > 0.0:
-            raise InputError(
-                f"the first point has a plastic strain of {strain[0]:.3g} already: give one that is still "
-                "elastic, or check the elastic constants",
-                "",
-                file,
-            )
-        for problem, values, least in (("plastic strain does not ascend", strain, 0.0), ("stress falls", stress, None)):
-            steps = np.diff(values)
-            wrong = np.flatnonzero(steps <= least if least is not None else steps < 0.0)
-            if len(wrong):
-                k = int(wrong[0])
-                raise InputError(
-                    f"the {problem} from {values[k]:.6g} to {values[k + 1]:.6g} (point {k + 2} of those "
-                    "that are plastic)",
-                    "",
-                    file,
-                )
+            first = f"the first point has a plastic strain of {strain[0]:.3g} already"
+            return f"{first}: give one that is still elastic, or check the elastic constants"
+        not_ascending, falls = np.diff(strain) <= 0.0, np.diff(stress) < 0.0
+        for what, values, wrong in (
+            ("plastic strain does not ascend", strain, not_ascending),
+            ("stress falls", stress, falls),
+        ):
+            if wrong.any():
+                k = int(np.argmax(wrong))
+                steps = f"from {values[k]:.6g} to {values[k + 1]:.6g}"
+                return f"the {what} {steps} (point {k + 2} of those that are plastic)"
         if stress[0] <= 0.0:
-            raise InputError(
-                f"the stress where yielding begins is {stress[0]:g} N/mm²; it must be above 0", "", self.file or ""
-            )
+            return f"the stress where yielding begins is {stress[0]:g} N/mm²; it must be above 0"
+        return ""
 
 
 AnyCurve = Swift | Voce | RambergOsgood | Table

@@ -12,7 +12,7 @@ from coilset.model.base.entry import Strict
 from coilset.model.base.errors import InputError
 from coilset.model.material.law import functions as fn
 from coilset.model.material.law.checks import check_combinations, check_functions
-from coilset.model.material.law.file import UNITS, Chaboche, Constants, Creep, MaterialFile, Validity
+from coilset.model.material.law.file import UNITS, Chaboche, Constants, MaterialFile
 from coilset.model.material.law.hardening_curves import AnyCurve
 from coilset.model.material.law.parts import CREEP_ENTRIES, Parts, further_columns
 
@@ -46,21 +46,6 @@ class Law:
     def name(self) -> str:
         """As the file names it."""
         return self.data.name
-
-    @property
-    def description(self) -> str:
-        """What it is, in a sentence."""
-        return self.data.description
-
-    @property
-    def source(self) -> str:
-        """Where its constants come from."""
-        return self.data.source
-
-    @property
-    def validity(self) -> Validity:
-        """Where its constants may be trusted."""
-        return self.data.validity
 
     @property
     def temperatures(self) -> tuple[float, ...]:
@@ -117,11 +102,6 @@ class Law:
         h = self.data.heating
         return h.dissipated / (h.density * h.specific_heat) if h else 0.0
 
-    @property
-    def creep(self) -> Creep | None:
-        """Creep's constants, if it creeps."""
-        return self.data.creep
-
     def constants(self, temperature: float) -> Iterator[tuple[str, tuple[float, str]]]:
         """Names, values and units of the constants that the file gives at one of its temperatures."""
         at = self.data.temperatures[self.temperatures.index(temperature)]
@@ -176,7 +156,12 @@ class Law:
         terms = self._terms.tobytes() if self.n_terms else b""
         sections = self.data.creep, self.data.rate, self.data.heating
         parts = (part.model_dump_json().encode() for part in sections if part)
-        return self.parameters().tobytes() + terms + b"".join(parts) + np.float64(self.validity.plastic_work).tobytes()
+        return (
+            self.parameters().tobytes()
+            + terms
+            + b"".join(parts)
+            + np.float64(self.data.validity.plastic_work).tobytes()
+        )
 
     def refuse(self, place: str, problem: str) -> NoReturn:
         """Raise InputError about an entry of its file."""

@@ -58,8 +58,7 @@ class OwnLaw(Law):
         self.values, self.variables = np.array(parameters, float), tuple(variables)
         self.update: Update = update if hasattr(update, "py_func") else njit(**OPTIONS)(update)
         self.width = REPORTED + len(self.variables)
-        checked = check_law(self.update, self.values, self.width)
-        self._moduli, self.keeps_direction = checked.moduli, checked.keeps_direction
+        self._moduli, self.keeps_direction = check_law(self.update, self.values, self.width)
         data = library.load("elastic").data.model_dump()
         E, G = self._moduli
         data |= {"name": name, "description": "a law given from Python", "source": "coilset.api.Law"}

@@ -5,7 +5,6 @@ refused here would later show as an iteration that does not converge, or as a re
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,21 +19,11 @@ WRONG = 2  # states of a path at which a kink may lie between the points of the 
 Point = tuple[np.ndarray, np.ndarray, np.ndarray]  # stress, state and tangent
 
 
-@dataclass(frozen=True)
-class Checked:
-    """What the checks found.
-
-    Attributes:
-        moduli: E and G of the unstressed point, MPa.
-        keeps_direction: whether stresses turn with strains that are turned about the wire's axis.
-    """
-
-    moduli: tuple[float, float]
-    keeps_direction: bool
-
-
-def check_law(update: Callable[..., bool], parameters: np.ndarray, width: int) -> Checked:
+def check_law(update: Callable[..., bool], parameters: np.ndarray, width: int) -> tuple[tuple[float, float], bool]:
     """Check a compiled law of three stresses and a state of the given width.
+
+    Returns:
+        E and G of the unstressed point, MPa, and whether stresses turn with strains about the wire's axis.
 
     Raises:
         InputError: one line with what is wrong.
@@ -64,7 +53,7 @@ def check_law(update: Callable[..., bool], parameters: np.ndarray, width: int) -
     for size in SIZES:
         for _path in range(PATHS):
             turned &= _check_path(at, size * rng.normal(size=(STEPS, 3)), width)
-    return Checked((float(C[0, 0]), float(C[1, 1])), bool(turned))
+    return (float(C[0, 0]), float(C[1, 1])), bool(turned)
 
 
 def _check_path(at: Callable[..., Point], increments: np.ndarray, width: int) -> bool:

@@ -75,7 +75,7 @@ class Bar:
     def __init__(self, material: Law) -> None:
         self.rule = polar(16, 12)
         self.sections = make_sections("plane", material, material.parameters(), self.rule, np.array([R]), straight(1))
-        self.creep = CreepLaw(material.creep, material.parts()) if material.creep else None
+        self.creep = CreepLaw(material.data.creep, material.parts()) if material.data.creep else None
         clock = {"clock": np.array([0.0, WARM, 0.0])}
         self.state = self.sections.initial_state() | {"strain": np.zeros((1, 2, 6))} | clock
 
