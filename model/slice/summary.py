@@ -57,10 +57,8 @@ def summarise(analysis: SliceAnalysis) -> dict:
 
 def slice_warnings(analysis: SliceAnalysis) -> list[Warning]:
     """Warnings about the case, and about plastic work beyond the material's validity."""
-    found, limit = (
-        list(case_warnings(analysis.case, analysis.spring, analysis.law)),
-        analysis.law.data.validity.plastic_work,
-    )
+    found = list(case_warnings(analysis.case, analysis.spring, analysis.law))
+    limit = analysis.law.data.validity.plastic_work
     beyond = [shot for shot in analysis.result.snapshots if shot.work.max() > limit]
     if beyond:
         greatest = max(float(shot.work.max()) for shot in beyond)

@@ -219,10 +219,9 @@ class Continuation:
             return None
         start.waxpy(-1.0, self._unstable, self.system.increments)
         near = self.stability.greatest_displacement(start) <= self.system.line.rod.largest_radius
-        negative = self.stability.negative_pivots(load) if near else math.inf
-        if negative > self.negative_pivots:
+        if not near or (negative := self.stability.negative_pivots(load)) > self.negative_pivots:
             return None
-        return replace(outcome, negative_pivots=int(negative), left_branch=True)
+        return replace(outcome, negative_pivots=negative, left_branch=True)
 
     def _ends_here(self, path: Path, size: float, outcome: Outcome) -> bool:
         """Whether the path of a failed step ends, or must be left because it becomes unstable.

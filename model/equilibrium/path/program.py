@@ -235,10 +235,11 @@ class LoadProgram:
     def _can_open(self, stage: Stage) -> bool:
         """Whether a stage releases the spring by its force alone; collective."""
         drives = any(drive.end is not None or drive.table for drive in stage.drives)
-        if stage.kind != "force" or stage.value is None or stage.hours or drives or not self.control.force:
+        if stage.kind != "force" or stage.value is None or stage.hours or drives:
             return False
-        compressed = (self.control.free_length - self.control.height) * self.control.force > 0.0
-        return compressed and 0.0 <= stage.value / self.control.force < 1.0
+        force = self.control.force
+        resists = (self.control.free_length - self.control.height) * force > 0.0
+        return resists and 0.0 <= stage.value / force < 1.0
 
     def _rises_first(self, stage: Stage) -> bool:
         """Whether the spring would be unstable where it is, were its force prescribed; collective."""

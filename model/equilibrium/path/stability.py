@@ -67,11 +67,12 @@ class Stability:
         of a coil on the edge of another, it goes on with a matrix that is shifted until all of its are positive: the
         lowest ones are then the nearest.
         """
-        factors, symmetric = self._factors(load), self.system.is_symmetric
+        factors = self._factors(load)
         matrix, scale = self._matrix, self.layout.vector(self.weights(load))
         values, block = self._nearest(factors, scale)
-        negative = _negative(factors) if symmetric else int(np.count_nonzero(values < 0.0))
-        if symmetric and negative > np.count_nonzero(values < 0.0):
+        found = int(np.count_nonzero(values < 0.0))
+        negative = _negative(factors) if self.system.is_symmetric else found
+        if negative > found:
             shift = float(np.abs(values).max())
             while _negative(factors) and np.isfinite(shift):
                 shift *= FURTHER
