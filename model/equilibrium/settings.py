@@ -72,8 +72,8 @@ class StepControl:
 
     Attributes:
         smallest: size below which the path is abandoned.
-        patience: evaluations in vain, of attempts without an equilibrium, after which the program is given up unless it
-            has advanced by a hundredth of the phase, or by a regular step.
+        patience: evaluations in vain, of attempts without an equilibrium, after which a snap is tried, with as many at
+            most, and the program is given up, unless it has advanced by a hundredth of the phase, or by a regular step.
         automatic: number of regular steps in an automatic phase; it starts with one of these.
         easy: number of iterations up to which the next automatic step becomes longer.
         hard: number of iterations from which the next automatic step becomes shorter.
