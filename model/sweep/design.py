@@ -4,7 +4,6 @@ import itertools
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
 
 from coilset.model.base.errors import InputError
 from coilset.model.sweep.packed import Row, Rows
@@ -60,6 +59,8 @@ def unit_cube(spec: SweepSpec) -> np.ndarray:
     For `sobol_indices` they are the blocks A, B, AB₁ … AB_d of Saltelli et al., Comput. Phys. Commun. 181 (2010) 259:
     ABᵢ is A with column i from B.
     """
+    from scipy.stats import qmc
+
     assert spec.samples is not None  # required by SweepSpec with these designs
     d, n = len(spec.vary), spec.samples
     rng = np.random.default_rng(spec.seed)

@@ -7,7 +7,6 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from annotated_types import Unit
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
-from scipy import stats
 
 from coilset.model.base.entry import Strict, Whole, shortened
 from coilset.model.results.records.summary_entries import NUMBERS
@@ -104,6 +103,8 @@ class Normal(Input):
 
     def at(self, q: Sequence[float] | np.ndarray) -> np.ndarray:
         """Values at the probabilities `q`, the quantiles of the truncated normal distribution."""
+        from scipy import stats  # loads for half a second, and most runs from Python vary nothing
+
         scatter = stats.truncnorm(-self.sigmas, self.sigmas, loc=self.mean, scale=self.tolerance / self.sigmas)
         q = np.asarray(q)
         return np.concatenate([scatter.ppf(part) for part in np.array_split(q, len(q) // AT_ONCE + 1)])

@@ -83,9 +83,12 @@ def _sections(folder: Path) -> xr.Dataset:
 
 def add_summary(data: xr.Dataset, summary: Mapping[str, Any]) -> None:
     """Add each number of a summary as `summary_…` with its `units`, NaN for none, and its words as attributes."""
-    for name, value in summary.items():
-        if isinstance(value, int | float) or value is None:
-            number = float("nan") if value is None else float(value)
-            data[f"summary_{name}"] = ((), number, {"units": unit_of(name)})
-        elif isinstance(value, str):
-            data.attrs[name] = value
+    # all at once: each update aligns every index of the data again
+    data.update(
+        {
+            f"summary_{name}": ((), float("nan") if value is None else float(value), {"units": unit_of(name)})
+            for name, value in summary.items()
+            if isinstance(value, int | float) or value is None
+        }
+    )
+    data.attrs.update({name: value for name, value in summary.items() if isinstance(value, str)})
