@@ -131,6 +131,11 @@ class Phase(Stepped):
         """Whether it has a travel, height or force to go to."""
         return isinstance(self.to, str) or bool(self.to.axial)
 
+    @property
+    def gives_force(self) -> bool:
+        """Whether it goes to an axial force."""
+        return not isinstance(self.to, str) and self.to.force is not None
+
     def goal(self, free_length: float, block_height: float) -> tuple[Literal["height", "force"], float]:
         """The driven quantity, height between the seats, mm, or axial force, N, and its value at the end.
 

@@ -68,11 +68,23 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
             _within(inside, s.get("estimated_residual_shear_inside_error_MPa"), "MPa", 1),
             f"inside of the coil{at}{', ' + against if against else ''}",
         ),
-        Number("maximum force", _within(s["force_max_N"], s.get("estimated_force_error_N"), "N", 1), _errors(s)),
+        *_greatest(s),
         Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
         *_tension(s),
         Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         *([] if is_pulled(s) else [Number("block height", with_unit(s["block_height_mm"], "mm", 2))]),
+    ]
+
+
+def _greatest(s: Mapping[str, Any]) -> list[Number]:
+    """The maximum force; where the load program gives it, the height under it, which is what was computed."""
+    if not s.get("force_max_is_given"):
+        force = _within(s["force_max_N"], s.get("estimated_force_error_N"), "N", 1)
+        return [Number("maximum force", force, _errors(s))]
+    height = _within(s["force_max_height_mm"], s["estimated_force_max_height_error_mm"], "mm", 3)
+    return [
+        Number("maximum force", with_unit(s["force_max_N"], "N", 1), "as given"),
+        Number("height under the maximum force", height, _errors(s)),
     ]
 
 

@@ -92,6 +92,7 @@ def results(summary: dict[str, Any]) -> list[tuple[str, str]]:
         ("set", with_unit(s["set_mm"], "mm", 2, "")),
         ("block height", "" if is_pulled(s) else with_unit(s["block_height_mm"], "mm", 2, "")),
         ("maximum force", f"{plain(s['force_max_N'], 5)} N"),
+        ("height under it", with_unit(s["force_max_height_mm"], "mm", 2, "") if s.get("force_max_is_given") else ""),
         ("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3, "")),
         ("rate after release, 30 to 70 %", with_unit(s["rate_30_70_after_N_per_mm"], "N/mm", 3, "")),
         ("maximum shear stress, inside", with_unit(s["shear_inside_max_MPa"], "MPa", 0, "")),

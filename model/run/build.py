@@ -12,7 +12,7 @@ from coilset.meshes.springs.placement import Placement, chord_placement, refuse_
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.head_freedoms import DamperSpec, HeadsSpec
-from coilset.model.case.phases import heads_of
+from coilset.model.case.phases import Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.newton.contact_limit import ContactLimit, free_penetration
@@ -206,6 +206,7 @@ def build_setup(
         material=law.name,
         ends=case.ends,
         phases=tuple(phase.label for phase in case.loading),
+        forces_given=forces_given(case),
         turns=wire.turns,
         wire_radius=wire.radius,
         rule=rod.rule,
@@ -223,6 +224,14 @@ def build_setup(
         wound_solid="initial_tension" in case.past,
         strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
     )
+
+
+def forces_given(case: Case) -> tuple[bool, ...]:
+    """Of each phase, whether it ends at a force of the load program; time may pass under one."""
+    given = [False]
+    for phase in case.loading:
+        given.append(phase.gives_force if isinstance(phase, Phase) else phase.duration.keep == "force" and given[-1])
+    return tuple(given[1:])
 
 
 def build_force_line(case: Case) -> ForceLine | None:

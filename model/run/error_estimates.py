@@ -366,8 +366,9 @@ def _shear_slope(setup: Setup, result: Result, release: Release) -> float:
 
 def _of_steps(setup: Setup, result: Result) -> Errors:
     """Errors by the length of the steps."""
-    top, release = max(result.steps, key=lambda step: abs(step.force_N)), last_release(setup, result)
-    force, error = top.steps_force_error_N, None if release is None else release.set_error
+    release = last_release(setup, result)
+    force = result.top.steps_force_error_N if result.top else None
+    error = None if release is None else release.set_error
     if release is None or error is None:
         return Errors(None if force is None else abs(force), None, None)
     return Errors(None if force is None else abs(force), abs(error), _shear_slope(setup, result, release) * abs(error))

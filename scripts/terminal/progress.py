@@ -303,7 +303,12 @@ def _pressed(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm")
     for rate in summary["rates"]:
         yield f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm")
-    yield "maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2)
+    if summary["force_max_is_given"]:
+        yield "maximum force, given", quantity(summary["force_max_N"], "N", 2)
+        error = summary["estimated_force_max_height_error_mm"]
+        yield "height under it", within(summary["force_max_height_mm"], error, "mm", 4)
+    else:
+        yield "maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2)
     if summary["load_loss_percent"] is not None:
         yield "load lost in time", quantity(summary["load_loss_percent"], "%", 2)
     yield "block height", quantity(summary["block_height_mm"], "mm")

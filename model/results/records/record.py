@@ -308,6 +308,7 @@ class Setup:
         material: name of the law.
         ends: `seats` or `clamped`.
         phases: labels of the load program.
+        forces_given: of each phase, whether it ends at a given axial force.
         turns: of the stations, shape (n + 1,).
         wire_radius: of the elements, shape (n,), mm.
         rule: DiskRule.
@@ -330,6 +331,7 @@ class Setup:
     material: str
     ends: str
     phases: tuple[str, ...]
+    forces_given: tuple[bool, ...]
     turns: np.ndarray
     wire_radius: np.ndarray
     rule: DiskRule
@@ -351,6 +353,10 @@ class Setup:
     def slender(self) -> bool:
         """Whether it can buckle."""
         return math.isfinite(self.buckling_travel)
+
+    def is_force_given(self, step: Step) -> bool:
+        """Whether the force at the end of a step is a target of the load program, so that its height is the result."""
+        return self.forces_given[step.phase] and step.progress >= 1.0
 
     @property
     def section_turns(self) -> np.ndarray:
@@ -522,6 +528,11 @@ class Result:
     working: Working | None = field(default=None, repr=False)
 
     @property
+    def top(self) -> Step | None:
+        """The step of the force of largest magnitude; None before the first step."""
+        return max(self.steps, key=lambda step: abs(step.force_N), default=None)
+
+    @property
     def greatest_force(self) -> float:
         """Magnitude of the largest force so far, N."""
-        return max((abs(step.force_N) for step in self.steps), default=0.0)
+        return abs(self.top.force_N) if self.top else 0.0

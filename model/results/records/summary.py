@@ -46,7 +46,7 @@ def summary(setup: Setup, result: Result) -> Summary:
     """The summary of a run, complete or not, on rank 0; free length, set and residual stress are those after the last
     release."""
     freed = releases(setup, result)
-    release = freed[-1] if freed else None
+    release, top = freed[-1] if freed else None, result.top
     shot = release.snapshot if release else None
     inside, inside_turn = shear_inside(setup, shot) if shot else (None, None)
     axis, buckled = setup.spring.measured_axis, buckling(result.steps, setup.mean_diameter)
@@ -58,7 +58,10 @@ def summary(setup: Setup, result: Result) -> Summary:
         releases=tuple(_release(one) for one in freed),
         rate_N_per_mm=result.rate if isfinite(result.rate) else None,
         **rates(setup, result, release),
-        force_max_N=max((step.force_N for step in result.steps), default=0.0, key=abs),
+        force_max_N=top.force_N if top else 0.0,
+        force_max_is_given=top is not None and setup.is_force_given(top),
+        force_max_height_mm=top.seat_height_mm if top else None,
+        estimated_force_max_height_error_mm=top.estimated_height_error_mm if top else None,
         block_height_mm=setup.spring.block_height,
         **peak_entries("residual_shear_max", shear_peak(setup, shot) if shot else None),
         shear_max_MPa=max(shear_peak(setup, one).value for one in result.snapshots),

@@ -51,6 +51,11 @@ class Summary:
         "first compression there by a parabola through three steps",
     )
     force_max_N: float = entry("N", "the force of largest magnitude in any step", in_slice=True)
+    force_max_is_given: bool = entry("", "whether the load program gives that force, so that its height was computed")
+    force_max_height_mm: float | None = entry("mm", "height between the seats under it; `null` before the first step")
+    estimated_force_max_height_error_mm: float | None = entry(
+        "mm", "estimated size of the error of this height, as of that force; `null` where one of its parts is not known"
+    )
     block_height_mm: float = entry("mm", "height at which each coil touches the next, by geometry", in_slice=True)
     residual_shear_max_MPa: float | None = entry(
         "MPa",

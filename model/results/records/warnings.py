@@ -111,6 +111,8 @@ def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
         travel = step.travel_mm - before.travel_mm
         if step.phase != before.phase or step.progress < 1.0 or travel <= 0.0 or step.force_N <= free:
             continue
+        if setup.is_force_given(step):  # the height under it is the better known, the steeper the characteristic
+            continue
         rate = (step.force_N - before.force_N) / travel
         percent = abs(rate) * step.travel_mm / step.force_N
         if percent > WALL:
@@ -204,7 +206,7 @@ def _equivalent(shot: Snapshot) -> float:
 def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     """The larger of the errors of maximum force and set; or that the former could not be estimated."""
     required = setup.limits.accuracy
-    top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
+    top = result.top
     if required is None or top is None or not top.force_N:
         return
     if is_turned(setup, result.steps):  # these errors are those of a force along the axis, here close to zero
@@ -217,7 +219,8 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
             )
             yield Warning("unknown error", _place(top), message, None, required)
         return
-    worst, place, of = abs(top.steps_force_error_N / top.force_N), _place(top), ("the force", "")
+    worst, place = required * abs(top.steps_force_error_N) / allowed_force(setup, result), _place(top)
+    of = (f"the {force_in_words(setup, result)}", "")
     release = last_release(setup, result)
     error = None if release is None else release.set_error
     noticed = error is not None and abs(error) > NOTICED * setup.spring.free_length
@@ -262,6 +265,27 @@ MORE = {
 """What makes an error smaller, by its cause."""
 
 
+def allowed_force(setup: Setup, result: Result) -> float:
+    """The error of the maximum force by the requested accuracy, N.
+
+    Where the load program gives that force, the height under it is what was computed: it may be wrong by the accuracy
+    of its travel, and the force at one height by as much as that changes it, which near block is more.
+    """
+    required, top = setup.limits.accuracy or 0.0, result.top
+    if top is None:
+        return 0.0
+    allowed = abs(top.force_N)
+    force, height = top.steps_force_error_N, top.steps_height_error_mm
+    if setup.is_force_given(top) and force and height:
+        allowed = max(allowed, abs(top.travel_mm * force / height))
+    return required * allowed
+
+
+def force_in_words(setup: Setup, result: Result) -> str:
+    """What the error of the maximum force is one of."""
+    return "travel at the maximum force" if result.top and setup.is_force_given(result.top) else NUMBERS["force_N"]
+
+
 def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     """Errors by the requested accuracy of the numbers that it governs, by their names in Errors: of a set, at least
     one that is noticed; of the residual stress inside, STRESS times the accuracy of the largest stress there. None in
@@ -270,7 +294,7 @@ def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     if is_turned(setup, result.steps):
         return {}
     required, release = setup.limits.accuracy or 0.0, last_release(setup, result)
-    found = {"force_N": required * result.greatest_force}
+    found = {"force_N": allowed_force(setup, result)}
     if release is not None and release.set > 0.0:
         found["set_mm"] = max(required * release.set, NOTICED * setup.spring.free_length)
         largest = max(abs(shear_inside(setup, one)[0]) for one in result.snapshots)
@@ -295,8 +319,9 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
             return
         if error > allowed:
             worst[name] = required * error / allowed
-            size = f"{100 * worst[name]:.2g} %" if name == "force_N" else f"{error:.2g} {unit_of(name)}"
-            words.append(f"{size} of the {NUMBERS[name]}")
+            is_force = name == "force_N"
+            size = f"{100 * worst[name]:.2g} %" if is_force else f"{error:.2g} {unit_of(name)}"
+            words.append(f"{size} of the {force_in_words(setup, result) if is_force else NUMBERS[name]}")
     if worst:
         largest = max(worst, key=lambda name: worst[name])
         cause = errors.largest(largest)
