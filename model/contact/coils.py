@@ -236,6 +236,10 @@ def keep_pressing(
         least = min(least, where[k, 1])
         own = offsets[pair[k, 0], place(turns_between(turns, station_turns, pair[k], where[k]))]
         if where[k, 1] < own:
-            pair[count], where[count], offset[count] = pair[k], where[k], own
+            for j in range(pair.shape[1]):  # slices in the place of these loops take numba three seconds to compile
+                pair[count, j] = pair[k, j]
+            for j in range(where.shape[1]):
+                where[count, j] = where[k, j]
+            offset[count] = own
             count += 1
     return count, least

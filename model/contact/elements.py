@@ -125,7 +125,8 @@ def coil_elements(curve: Curve, bedding: Bedding, pressed: Pressed, room: Room) 
         i, e, t = pair[m, 0], pair[m, 1], where[m, 0]
         pressure[m], hardness = one_sided_at(where[m, 1] - offset[m], stiffness[i], onset)
         penetration[m], point[m], onset_force[m] = -where[m, 1], i, stiffness[i] * onset
-        dofs[m, :half], dofs[m, half:] = element_dofs[element[i]], element_dofs[e]
+        for s in range(half):
+            dofs[m, s], dofs[m, half + s] = element_dofs[element[i], s], element_dofs[e, s]
         point_on_curve(y, first, cubic, e, t, c, 0)
         point_on_curve(y, first, cubic, e, t, dc, 1)
         point_on_curve(y, first, cubic, e, t, ddc, 2)

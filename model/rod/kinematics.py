@@ -99,7 +99,9 @@ def displace_nodes(
             chord[c, k] = chord0[c, k] + (increment[u_dofs[j, k]] - increment[u_dofs[i, k]])
         for k in range(own.shape[1]):
             own[c, k] = own0[c, k] + increment[own_dofs[c, k]]
-        T_cells[c, 0], T_cells[c, 1] = T[i], T[j]
+        for k in range(3):
+            for l in range(3):
+                T_cells[c, 0, k, l], T_cells[c, 1, k, l] = T[i, k, l], T[j, k, l]
 
 
 @njit(cache=True)

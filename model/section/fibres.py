@@ -3,6 +3,7 @@
 import copy
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -12,8 +13,8 @@ from coilset.model.material.law.law import Law
 from coilset.model.runtime.kernels import KERNEL, njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
-from coilset.model.section.ground import ground_sections, rim_rule
-from coilset.model.section.integration import FIBRES, section, update_points
+from coilset.model.section.ground import Ground, ground_sections, rim_rule
+from coilset.model.section.integration import FIBRES, section
 from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
@@ -130,51 +131,55 @@ class FibreSections:
         Returns:
             False if the law found no solution at some point or the strains are not finite.
         """
-        place, law = self.placement, self.law_over_time.over(start, trial)
-        return self.threads.run(
-            update_sections,
-            len(self.radius),
-            self.placement.stretch.shape[1] * len(self.y),
-            law,
-            tuple(self.ground),
-            self.y,
-            self.z,
-            self.weights,
-            self.radius,
-            place.curvature,
-            self.curved,
-            self._increment(strain, start, trial),
-            place.matrices,
-            place.stretch,
-            start["point_state"],
-            trial["point_state"],
-            s,
-            D,
-            with_tangent,
-        )
+        disk = self.y, self.z, self.weights
+        states = start["point_state"], trial["point_state"]
+        law = self.law_over_time.over(start, trial)
+        return self._run(law, self.ground, disk, self._increment(strain, start, trial), states, s, D, with_tangent)
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Advance the points on the wire's surface to the end of the increment; they have no weight in the section.
 
         If the law finds no solution the state becomes NaN.
         """
-        place, law = self.placement, self.law_over_time.over(start, trial)
-        self.threads.run(
-            update_surface,
+        rim = self.rim_y, self.rim_z, np.zeros(len(self.rim_y))
+        states = start["surface_state"], trial["surface_state"]
+        s = np.empty((*self.placement.stretch.shape, 6))
+        D = np.empty((*s.shape, 6))  # never written
+        law = self.law_over_time.over(start, trial)
+        self._run(law, self.ground_rim, rim, self._increment(strain, start, trial), states, s, D, False, True)
+
+    def _run(
+        self,
+        law: Any,
+        ground: Ground,
+        points: tuple[np.ndarray, ...],
+        increment: np.ndarray,
+        states: tuple[np.ndarray, np.ndarray],
+        s: np.ndarray,
+        D: np.ndarray,
+        with_tangent: bool,
+        spoil: bool = False,
+    ) -> bool:
+        """Run `update_sections`, at points y, z of the unit disk with weights."""
+        place = self.placement
+        return self.threads.run(
+            update_sections,
             len(self.radius),
-            self.placement.stretch.shape[1] * len(self.rim_y),
+            place.stretch.shape[1] * len(points[0]),
             law,
-            tuple(self.ground_rim),
-            self.rim_y,
-            self.rim_z,
+            tuple(ground),
+            *points,
             self.radius,
             place.curvature,
             self.curved,
-            self._increment(strain, start, trial),
+            increment,
             place.matrices,
-            start["surface_state"],
-            trial["surface_state"],
-            False,
+            place.stretch,
+            *states,
+            s,
+            D,
+            with_tangent,
+            spoil,
         )
 
 
@@ -198,6 +203,7 @@ def update_sections(
     s: np.ndarray,
     D: np.ndarray,
     with_tangent: bool,
+    spoil: bool,
 ) -> bool:
     """Bring the sections of a part of the cells to the end of the increment.
 
@@ -219,9 +225,11 @@ def update_sections(
             has not room for all.
         s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, sections, 6), about the chord axis.
         D: written if `with_tangent`, section tangent ds/de, shape (cells, sections, 6, 6).
+        spoil: make states NaN where the law found no solution, and go on.
 
     Returns:
-        False if the law found no solution at some point or the strains are no numbers: then the step must be cut.
+        False if the law found no solution at some point or the strains are no numbers, and `spoil` is False: then the
+        step must be cut.
     """
     points, (cut, cut_fibres, cut_shape) = len(w), ground
     d, resultant, tangent, work = np.empty(6), np.empty(6), np.empty((6, 6)), np.empty((6, 6))
@@ -245,49 +253,11 @@ def update_sections(
             if not section(
                 p, fibres, shape, d, old[c, g], new[at, g], strain, C, with_tangent, count, resultant, tangent
             ):
-                return False
+                if not spoil:
+                    return False
+                spoil_failed(count, new[at, g])
             to_chord(placement[c, g], stretch[c, g], resultant, tangent, work, s[c, g], D[c, g], with_tangent)
     return True
-
-
-@njit(**KERNEL, nogil=True)
-def update_surface(
-    ends: np.ndarray,
-    part: int,
-    p: np.ndarray,
-    ground: tuple[np.ndarray, np.ndarray, np.ndarray],
-    y: np.ndarray,
-    z: np.ndarray,
-    radius: np.ndarray,
-    curvature: np.ndarray,
-    curved: bool,
-    de: np.ndarray,
-    placement: np.ndarray,
-    old: np.ndarray,
-    new: np.ndarray,
-    with_tangent: bool,
-) -> None:
-    """Bring points y, z of the unit circle to the end of the increment; arguments as in `update_sections`.
-
-    `with_tangent` is False, and no constant, for which numba would compile the law once more.
-    """
-    points, (cut, cut_fibres, cut_shape) = len(y), ground
-    d, weightless = np.empty(6), np.zeros(len(y))
-    strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
-    disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
-    straight_shape(disk_shape)
-    for c in range(ends[part], ends[part + 1]):
-        R = radius[c]
-        round_fibres(y, z, weightless, R, disk)
-        for g in range(de.shape[1]):
-            to_section(placement[c, g], de[c, g], d)
-            fibres, shape = disk, disk_shape
-            if cut[c, g] >= 0:
-                fibres, shape = cut_fibres[cut[c, g]], cut_shape[cut[c, g]]
-            elif curved:
-                curved_shape(y, z, curvature[c, g] * R, disk_shape)
-            update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count)
-            spoil_failed(count, new[c, g])
 
 
 @njit(**KERNEL)

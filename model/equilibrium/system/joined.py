@@ -93,7 +93,7 @@ def _join(
     """As `join_patterns`, of small matrices whose unknowns lie one after the other, from `first` on."""
     n, count = len(indptr) - 1, 0
     begin, holders = _matrices_of_rows(first, unknowns, start, n)
-    most = len(indices) + np.sum(np.diff(first) ** 2)  # most of which will never be touched
+    most = len(indices) + np.sum((first[1:] - first[:-1]) ** 2)  # most of which will never be touched
     out, found, seen = np.zeros_like(indptr), np.empty(most, indices.dtype), np.full(size, -1)
     for row in range(n):
         own, of_row = indices[indptr[row] : indptr[row + 1]], holders[begin[row] : begin[row + 1]]

@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot, inf, isfinite, nan
+from math import inf, isfinite, nan
 
 import numpy as np
 
 from coilset.model.results.records.record import Step
-from coilset.model.runtime.kernels import njit
 
 SIDEWAYS = 0.05  # of the mean diameter: an axis that has deflected this far has buckled, however gradually
 NEAR = 0.95  # of the critical travel: an earlier deflection is due to ends that are not a whole number of turns apart
@@ -105,10 +104,11 @@ def axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:
         x, start: station positions now and at the start, shape (n, 3), mm.
         turns: of the stations, shape (n,).
     """
-    return _axis_offset(x, start, turns) if turns[-1] - turns[0] > 1.5 else 0.0
+    if turns[-1] - turns[0] <= 1.5:
+        return 0.0
+    return float(np.hypot(*turn_means((x - start)[:, :2], turns).T).max())
 
 
-@njit(cache=True)
 def turn_means(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
     """Means of values over the whole turn that begins at each station, as far as there is one, shape (m, columns).
 
@@ -116,18 +116,6 @@ def turn_means(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
         values: at the stations, shape (n, columns).
         turns: of the stations, shape (n,), more than one.
     """
-    first = turns[turns <= turns[-1] - 1.0]
-    means, total = np.empty((len(first), values.shape[1])), np.zeros(len(turns))
-    for k in range(values.shape[1]):
-        for i in range(1, len(turns)):
-            total[i] = total[i - 1] + 0.5 * (turns[i] - turns[i - 1]) * (values[i, k] + values[i - 1, k])
-        means[:, k] = np.interp(first + 1.0, turns, total) - np.interp(first, turns, total)
-    return means
-
-
-@njit(cache=True)
-def _axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:
-    means, offset = turn_means((x - start)[:, :2], turns), 0.0
-    for i in range(len(means)):
-        offset = max(offset, hypot(means[i, 0], means[i, 1]))
-    return offset
+    first, total = turns[turns <= turns[-1] - 1.0], np.zeros(values.shape)
+    np.cumsum(0.5 * np.diff(turns)[:, None] * (values[1:] + values[:-1]), axis=0, out=total[1:])
+    return np.stack([np.interp(first + 1.0, turns, one) - np.interp(first, turns, one) for one in total.T], axis=1)

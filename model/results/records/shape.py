@@ -6,7 +6,6 @@ from coilset.meshes.springs.ends import touching_pitch
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.contact.seat import Seat
 from coilset.model.equilibrium.system.system import System
-from coilset.model.runtime.kernels import njit
 
 PASSING = 0.5  # of the wire diameter: with a smaller touching pitch, coils pass each other by their shape
 
@@ -45,10 +44,5 @@ class LeastRise:
         """At station positions `x`, shape (n, 3), mm; None unless there are two coils, one above the other."""
         if not len(self._lower):
             return None
-        return _least_rise(x[:, 2], self._turns, self._lower, self._touching)
-
-
-@njit(cache=True)
-def _least_rise(z: np.ndarray, turns: np.ndarray, lower: np.ndarray, touching: np.ndarray) -> float:
-    """Of the wire at the levels z of the stations, over a turn from the turns `lower` on."""
-    return ((np.interp(lower + 1.0, turns, z) - np.interp(lower, turns, z)) / touching).min()
+        above, below = (np.interp(self._lower + turn, self._turns, x[:, 2]) for turn in (1.0, 0.0))
+        return float(((above - below) / self._touching).min())
