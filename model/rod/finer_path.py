@@ -118,10 +118,10 @@ class FinerPath:
         if end is None or not sum_of_ranks(comm, float(start.any())):
             return 0.5 * change + 0.25 * ratio / (1.0 + ratio) * (ratio * self._increment.equilibrium - change)
         turn = start - end
-        if not kinked:
-            return 0.5 * change + 0.125 * turn
         size, along = (sum_of_ranks(comm, float(np.vdot(turn, other))) for other in (turn, change - end))
-        part = min(max(along / size, 0.0), 1.0) if size > 0.0 else 0.5
+        if not kinked or not 0.0 < along < size:
+            return 0.5 * change + 0.125 * turn
+        part = along / size
         away = part * (start - change) if part > 0.5 else (1.0 - part) * (change - end)
         return part * change + away
 
