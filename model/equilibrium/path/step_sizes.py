@@ -69,6 +69,7 @@ class Position:
         before: length of the last step on this path; 0 if there is none.
         earlier: length of the step before that one on this path; 0 if there is none.
         share: of the last step's error, see Estimate; 0 while the wire is elastic.
+        iterations: of the last step on this path.
     """
 
     done: float = 0.0
@@ -78,6 +79,7 @@ class Position:
     before: float = 0.0
     earlier: float = 0.0
     share: float = 0.0
+    iterations: int = 0
 
     @property
     def has_left_branch(self) -> bool:
@@ -135,7 +137,7 @@ class StepSizes:
         last = 0.0 if outcome.left_branch else path.step_length(self.position.done, size)
         done, following = self.position.done + size, self._following(path, outcome, size)
         before, share = self.position.before, 0.0 if outcome.estimate is None else outcome.estimate.share
-        self.position = Position(done, following, 0, last, last, before if last else 0.0, share)
+        self.position = Position(done, following, 0, last, last, before if last else 0.0, share, outcome.iterations)
 
     def cut(self, outcome: Outcome, size: float) -> bool:
         """Make a step of this size, which failed, shorter; is it still as long as a step must be?"""
@@ -152,8 +154,18 @@ class StepSizes:
         if not path.automatic:
             return min(1.0, control.regrowth * size)
         easy, hard = outcome.iterations <= control.easy, outcome.iterations >= control.hard
+        hard = hard and not self._shortened_in_vain(path.step_length(self.position.done, size), outcome.iterations)
         factor = control.growth if easy else control.shrinkage if hard else 1.0
         if outcome.estimate is not None:
             least = control.finest / size  # up to there its error does not shorten a step
             factor = min(max(outcome.estimate.factor, least), control.shrinkage if hard else control.growth)
         return min(control.largest, factor * size)
+
+    def _shortened_in_vain(self, length: float, iterations: int) -> bool:
+        """Whether a step is shorter than a hard one before it, and took more iterations for its length.
+
+        Where forces jump, as at coils that slip and points that begin to flow, iterations hardly depend on the length.
+        """
+        last = self.position
+        shorter = last.iterations >= self.control.hard and length < last.before
+        return shorter and iterations * last.before > last.iterations * length
