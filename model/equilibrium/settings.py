@@ -78,7 +78,8 @@ class StepControl:
         easy: number of iterations up to which the next automatic step becomes longer.
         hard: number of iterations from which the next automatic step becomes shorter.
         growth: factor on the length of an automatic step after an easy one; it never grows by more.
-        shrinkage: factor on the length of an automatic step after a hard one.
+        shrinkage: factor on the length of an automatic step after a hard one, unless that was shorter than a hard one
+            before it and took more iterations for its length.
         largest: maximum size of an automatic step.
         largest_with_friction: the same with friction, as no estimate shows what long steps miss of its path.
         cut: factor on the length of a step that found no equilibrium.

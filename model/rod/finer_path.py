@@ -7,7 +7,8 @@ e₁′ of the step's start and end: its middle deviates from the chord by h (e�
 rates; where one is missing, as while time passes, the parabola through the strains at the last three equilibria is
 taken. Where coils or seats close or open, the path has a kink within the step. Two straight lines with these rates meet
 at the part θ of the step that fits its increment best, Δ = θ h e₀′ + (1 − θ) h e₁′, and so do the two parts, where the
-longer one of the lines ends. This divides the law's error and the area between path and chord by 4, so that
+longer one of the lines ends; if θ is not within the step, it has no kink. This divides the law's error and the area
+between path and chord by 4, so that
 
     s* − s ≈ 4/3 (s_finer − s)
 

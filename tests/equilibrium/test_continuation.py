@@ -11,7 +11,7 @@ from mpi4py import MPI
 from coilset.model.base.errors import SolveError
 from coilset.model.case import read_case
 from coilset.model.equilibrium.newton.newton import Start
-from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.newton.outcome import Estimate, Outcome
 from coilset.model.equilibrium.path.step_sizes import Path, StepSizes
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.results.records.summary import summarise
@@ -296,3 +296,14 @@ def test_an_initial_rate_without_equilibrium_is_no_end(make):
     assert len(result.warnings) == 1
     assert result.warnings[0].name == "initial rate"
     assert summarise(analysis.setup, result)["rate_N_per_mm"] is None
+
+
+@pytest.mark.parametrize(("second", "size"), [(13, 0.49), (15, 1.05), (9, 1.05)])
+def test_hard_steps_are_shortened_while_that_saves_iterations(second, size):
+    """After 20 iterations a step of 0.7 is next, which saves some with less than 14."""
+    path, sizes = Path(lambda done: None, 16, automatic=True), StepSizes(StepControl())
+    estimate = Estimate(0.0, 0.0, 0.0, 1.5)
+    sizes.accept(path, Outcome(True, "", 0.0, iterations=20, estimate=estimate), 1.0)
+    assert sizes.position.size == pytest.approx(0.7)
+    sizes.accept(path, Outcome(True, "", 0.0, iterations=second, estimate=estimate), 0.7)
+    assert sizes.position.size == pytest.approx(size)

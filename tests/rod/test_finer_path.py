@@ -99,6 +99,24 @@ def test_a_kink_within_a_step_is_found_where_it_is(part):
     assert known[0, 0, TWIST] / true == pytest.approx(4.0 / 3.0, rel=0.1)
 
 
+@pytest.mark.parametrize("part", [-0.2, 1.2])
+def test_lines_that_meet_beyond_a_step_show_no_kink_within_it(part):
+    """The path does not go on along the first line to the end of the step, nor along the second one from its start."""
+    before, behind, errors = np.zeros((1, 2, 6)), np.zeros((1, 2, 6)), []
+    before[..., TWIST], behind[..., TWIST], behind[..., BENDING] = 4e-4, 3e-4, 1e-4
+    for kinked in (False, True):
+        path = Path()
+        finer = follower(path)
+        path.to(5.0 * before)
+        finer.follow(path.s, 0.0, rate=before)
+        path.state.commit()
+        path.to(5.0 * before + part * before + (1.0 - part) * behind)
+        finer.follow(path.s, 1.0, kinked=kinked, rate=behind)
+        errors.append(path.state["section_force_error"].trial.copy())
+    assert errors[0].any()
+    assert np.array_equal(*errors)
+
+
 def test_what_stays_elastic_has_no_error():
     path = Path()
     finer = follower(path)
