@@ -27,6 +27,7 @@ BETWEEN = 4  # nodes in each interval of a table
 
 Strain = Annotated[float, Unit("1"), Field(gt=0)]
 Pressure = Annotated[float, Unit("N/mm²"), Field(gt=0)]
+StressAndSlope = tuple[np.ndarray, np.ndarray]
 Sampled = tuple[np.ndarray, np.ndarray, np.ndarray]
 """b*, N/mm², k², N²/mm⁴, and dk²/db*, N/mm², at the nodes."""
 
@@ -36,18 +37,14 @@ class Curve(Strict):
 
     up_to: Annotated[Strain, Field(description="plastic strain at which the curve ends; it is constant beyond")] = 0.3
 
-    def stress(self, strain: np.ndarray) -> np.ndarray:
-        """True stress at plastic strains, N/mm²."""
-        raise NotImplementedError
-
-    def slope(self, strain: np.ndarray) -> np.ndarray:
-        """dσ/dεᵖ, N/mm²."""
+    def stress(self, strain: np.ndarray) -> StressAndSlope:
+        """True stress at plastic strains and dσ/dεᵖ, both N/mm²."""
         raise NotImplementedError
 
     def sampled(self, young_modulus: float, shear_modulus: float) -> Sampled:
         """The curve at its nodes."""
         graded = np.geomspace(FIRST, 1.0, NODES - 1)
-        return sample(np.concatenate([[0.0], graded]) * self.up_to, self.stress, self.slope)
+        return sample(np.concatenate([[0.0], graded]) * self.up_to, self.stress)
 
 
 class Swift(Curve):
@@ -58,13 +55,10 @@ class Swift(Curve):
     strain_0: Annotated[Strain, Field(description="ε₀")]
     n: Annotated[float, Unit("1"), Field(gt=0, lt=1, description="the exponent")]
 
-    def stress(self, strain: np.ndarray) -> np.ndarray:
-        """True stress at plastic strains, N/mm²."""
-        return self.C * (self.strain_0 + strain) ** self.n
-
-    def slope(self, strain: np.ndarray) -> np.ndarray:
-        """dσ/dεᵖ, N/mm²."""
-        return self.n * self.C * (self.strain_0 + strain) ** (self.n - 1.0)
+    def stress(self, strain: np.ndarray) -> StressAndSlope:
+        """See `Curve`."""
+        total = self.strain_0 + strain
+        return self.C * total**self.n, self.n * self.C * total ** (self.n - 1.0)
 
 
 class Voce(Curve):
@@ -75,13 +69,10 @@ class Voce(Curve):
     rise: Annotated[Pressure, Field(description="Q, N/mm²")]
     rate: Annotated[float, Unit("1"), Field(gt=0, description="m")]
 
-    def stress(self, strain: np.ndarray) -> np.ndarray:
-        """True stress at plastic strains, N/mm²."""
-        return self.yield_stress + self.rise * -np.expm1(-self.rate * strain)
-
-    def slope(self, strain: np.ndarray) -> np.ndarray:
-        """dσ/dεᵖ, N/mm²."""
-        return self.rise * self.rate * np.exp(-self.rate * strain)
+    def stress(self, strain: np.ndarray) -> StressAndSlope:
+        """See `Curve`."""
+        exponent = -self.rate * strain
+        return self.yield_stress + self.rise * -np.expm1(exponent), self.rise * self.rate * np.exp(exponent)
 
 
 class RambergOsgood(Curve):
@@ -109,18 +100,16 @@ class RambergOsgood(Curve):
     def _before(self) -> float:
         return 0.002 * (self.elastic_limit / self.proof_stress) ** self.n
 
-    def stress(self, strain: np.ndarray) -> np.ndarray:
-        """True stress at plastic strains, N/mm²."""
-        return self.proof_stress * ((strain + self._before) / 0.002) ** (1.0 / self.n)
-
-    def slope(self, strain: np.ndarray) -> np.ndarray:
-        """dσ/dεᵖ, N/mm²."""
-        return self.stress(strain) / (self.n * (strain + self._before))
+    def stress(self, strain: np.ndarray) -> StressAndSlope:
+        """See `Curve`."""
+        total = strain + self._before
+        stress = self.proof_stress * (total / 0.002) ** (1.0 / self.n)
+        return stress, stress / (self.n * total)
 
     def sampled(self, young_modulus: float, shear_modulus: float) -> Sampled:
         """The curve at its nodes, in a geometric progression that starts at the subtracted strain."""
         total = np.geomspace(self._before, self.up_to + self._before, 2 * NODES)
-        return sample(total - total[0], self.stress, self.slope)
+        return sample(total - total[0], self.stress)
 
 
 class Table(Strict):
@@ -199,15 +188,13 @@ class Table(Strict):
         start = max(int(np.sum(strain <= ELASTIC)) - 1, 0)
         strain, stress = np.maximum(strain[start:], 0.0), stress[start:]
         strain = np.where(strain <= ELASTIC, 0.0, strain)
-        self._check(strain, stress)
+        if problem := self._problem(strain, stress):
+            raise InputError(problem, "", self.file or "")
         curve = PchipInterpolator(strain, stress)
         part = np.arange(BETWEEN) / BETWEEN
         nodes = np.append((strain[:-1, None] + np.diff(strain)[:, None] * part).ravel(), strain[-1])
-        return sample(nodes, curve, curve.derivative())
-
-    def _check(self, strain: np.ndarray, stress: np.ndarray) -> None:
-        if problem := self._problem(strain, stress):
-            raise InputError(problem, "", self.file or "")
+        slope = curve.derivative()
+        return sample(nodes, lambda strain: (curve(strain), slope(strain)))
 
     def _problem(self, strain: np.ndarray, stress: np.ndarray) -> str:
         """What is wrong with the points from the last elastic one on."""
@@ -246,13 +233,12 @@ def read_table(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
     return table.numbers("strain"), table.numbers("stress")
 
 
-def sample(
-    strain: np.ndarray, stress: Callable[[np.ndarray], np.ndarray], slope: Callable[[np.ndarray], np.ndarray]
-) -> Sampled:
+def sample(strain: np.ndarray, curve: Callable[[np.ndarray], StressAndSlope]) -> Sampled:
     """b*, k² and dk²/db* at plastic strains, the first of which is 0."""
     from scipy.integrate import cumulative_simpson  # takes a quarter of a second, so only where needed
 
     part = np.linspace(0.0, 1.0, FINE + 1)
     within = strain[:-1, None] + np.diff(strain)[:, None] * part
-    work = cumulative_simpson(stress(within), x=within, axis=1)[:, -1]
-    return np.concatenate([[0.0], np.cumsum(work)]), stress(strain) ** 2 / 1.5, 4.0 / 3.0 * slope(strain)
+    work = cumulative_simpson(curve(within)[0], x=within, axis=1)[:, -1]
+    stress, slope = curve(strain)
+    return np.concatenate([[0.0], np.cumsum(work)]), stress**2 / 1.5, 4.0 / 3.0 * slope
