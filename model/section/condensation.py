@@ -10,7 +10,8 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.point.choice import solid_points
+from coilset.model.material.point.choice import flow_points
+from coilset.model.material.point.groups import SOLID
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 from coilset.model.section.integration import SUMS
 
@@ -272,7 +273,7 @@ def project(R: float, f: np.ndarray, first: int, size: int, w: np.ndarray, r: np
 def forces(p: np.ndarray, of: Section, old: np.ndarray, new: np.ndarray, w: Work) -> bool:
     """Stresses of all points for the step of strains and warping, r = ∫ Bᵀ σ g dA; False if the law has no solution."""
     strains(of, w.step, w.strain)
-    if not solid_points(p, old, w.strain, new, w.C, w.flow):
+    if not flow_points(p, SOLID, old, w.strain.T, new, w.C.reshape((-1, 36)).T, True, w.flow):
         return False
     integrate(of, new, w.r)
     return True

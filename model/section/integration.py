@@ -15,7 +15,8 @@ import math
 
 import numpy as np
 
-from coilset.model.material.point.choice import rod_points
+from coilset.model.material.point.choice import flow_points
+from coilset.model.material.point.groups import ROD
 from coilset.model.runtime.kernels import KERNEL, njit
 
 FIBRES = 5  # rows of `fibres`: y, z, u, v and area
@@ -24,7 +25,7 @@ Three = tuple[float, float, float]
 NOTHING = (0.0, 0.0, 0.0)
 
 
-@njit(**KERNEL)
+@njit(**KERNEL, inline="always")  # rather than to compile the law once more, as `section`
 def update_points(
     p: np.ndarray,
     fibres: np.ndarray,
@@ -57,7 +58,7 @@ def update_points(
         strain[0, k] = (d[0] + d[4] * z[k] - d[5] * y[k]) * inverse
         strain[1, k] = (shape[1, k] * d[1] + shape[2, k] * d[2] - d[3] * v[k]) * inverse
         strain[2, k] = (shape[3, k] * d[1] + shape[4, k] * d[2] + d[3] * u[k]) * inverse
-    return rod_points(p, old, strain, new, C, with_tangent, count)
+    return flow_points(p, ROD, old, strain, new, C, with_tangent, count)
 
 
 @njit(**SUMS)
@@ -126,7 +127,7 @@ def tangents(fibres: np.ndarray, shape: np.ndarray, C: np.ndarray, D: np.ndarray
         D[1, 1 + j], D[2, 1 + j], D[3, 1 + j] = t1[j], t2[j], t3[j]
 
 
-@njit(**KERNEL)
+@njit(**KERNEL, inline="always")
 def section(
     p: np.ndarray,
     fibres: np.ndarray,

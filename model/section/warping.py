@@ -25,8 +25,8 @@ from coilset.meshes.springs.placement import Placement
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.functions import ROWS_START, SHEAR, YOUNG
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.choice import solid_points
-from coilset.model.material.point.groups import hooke
+from coilset.model.material.point.choice import flow_points
+from coilset.model.material.point.groups import SOLID, hooke
 from coilset.model.runtime.kernels import njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
@@ -283,5 +283,5 @@ def update_surface(
             for j in range(n):
                 w.step[6 + j] = da[c, g, j]
             strains(of, w.step, w.strain)
-            solid_points(p, old[c, g], w.strain, new[c, g], w.C, w.flow)
+            flow_points(p, SOLID, old[c, g], w.strain.T, new[c, g], w.C.reshape((-1, 36)).T, True, w.flow)
             spoil_failed(w.flow, new[c, g])

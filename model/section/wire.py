@@ -7,6 +7,7 @@ import numpy as np
 from coilset.model.base.errors import SolveError
 from coilset.model.material.law.parts import Parts
 from coilset.model.material.point.choice import advance_points
+from coilset.model.material.point.groups import ROD
 from coilset.model.section.integration import section
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
@@ -120,6 +121,6 @@ class Wire:
         held, C, count = self._room
         held[:], new = 0.0, np.empty_like(self.states)
         held[0] = -strain
-        if not advance_points(self.law, self.states, held, new, C, False, count):
+        if not advance_points(self.law, ROD, self.states, held, new, C, False, count):
             raise SolveError("the law found no solution")
         self.states = new

@@ -7,7 +7,8 @@ import numpy as np
 
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.choice import solid_points
+from coilset.model.material.point.choice import flow_points
+from coilset.model.material.point.groups import SOLID
 from coilset.model.runtime.kernels import njit
 from coilset.model.solid.kinematics import push_forward, stretches
 
@@ -25,7 +26,8 @@ def update_points(p: Any, old: np.ndarray, strain: np.ndarray, new: np.ndarray, 
     Returns:
         0, or -1 if the law found no solution at some point.
     """
-    return 0 if solid_points(p, old, strain, new, C, np.empty(len(strain), np.int64)) else -1
+    rows, count = C.reshape((-1, 36)).T, np.empty(len(strain), np.int64)
+    return 0 if flow_points(p, SOLID, old, strain.T, new, rows, True, count) else -1
 
 
 class MaterialPoints:

@@ -8,7 +8,8 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.point.choice import rod_points
+from coilset.model.material.point.choice import flow_points
+from coilset.model.material.point.groups import ROD
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 from coilset.model.section.shape import shear_by_force
 
@@ -95,7 +96,7 @@ def integrate(
         strain[0, k] = math.log(stretched / before)
         strain[1, k] = (coil.across[k] * (E[1] - old_E[1]) + (E[2] - old_E[2]) * z) / m
         strain[2, k] = (coil.along[k] * (E[1] - old_E[1]) - y * (E[2] - old_E[2])) / m
-    if not rod_points(coil.p, old, strain, new, tangent, True, count):
+    if not flow_points(coil.p, ROD, old, strain, new, tangent, True, count):
         return False
     for k in range(points):
         y, z, across, along = coil.y[k], coil.z[k], coil.across[k], coil.along[k]

@@ -16,7 +16,8 @@ from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.material.point import increment, points
-from coilset.model.material.point.choice import advance_points, advance_solids, point_map
+from coilset.model.material.point.choice import advance_points, point_map
+from coilset.model.material.point.groups import ROD, SOLID
 
 COLD, WARM, ALPHA = 293.15, 473.15, 1.2e-5
 MODULI = {COLD: (80000.0, 0.29), WARM: (74000.0, 0.31)}
@@ -269,9 +270,9 @@ def test_no_time_is_the_return_mapping(components):
         state, tangent, _ = points.update(law, state, de[None])
         new, C, count = np.full_like(row[None], np.nan), np.empty((components, components)), np.empty(1, np.int64)
         if components == 3:
-            assert advance_points(p, row[None], de[:, None], new, C.reshape(9, 1), True, count)
+            assert advance_points(p, ROD, row[None], de[:, None], new, C.reshape(9, 1), True, count)
         else:
-            assert advance_solids(p, row[None], de[None], new, C[None], count)
+            assert advance_points(p, SOLID, row[None], de[None].T, new, C.reshape(1, 36).T, True, count)
         row = new[0]
         assert row[:-2].tolist() == state[0].tolist()
         assert C.tolist() == tangent[0].tolist()

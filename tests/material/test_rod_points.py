@@ -7,7 +7,8 @@ from coilset.model.material import library
 from coilset.model.material.law.hardening_curves import Swift
 from coilset.model.material.law.law import Law
 from coilset.model.material.point import points
-from coilset.model.material.point.choice import advance_points, advance_solids
+from coilset.model.material.point.choice import advance_points
+from coilset.model.material.point.groups import ROD, SOLID
 from coilset.model.material.point.local_rows import GROUP
 
 MATERIALS = ("ck15", "linear_isotropic", "linear_kinematic", "mixed", "ideal_plastic", "voce")
@@ -52,11 +53,11 @@ def advanced(law, old, de, temperature=None):
     new, count, p = np.empty_like(old), np.empty(len(old), np.int64), law.parameters(temperature)
     if de.shape[1] == 3:
         rows = np.empty((9, len(old)))
-        assert advance_points(p, old, de.T.copy(), new, rows, True, count)
+        assert advance_points(p, ROD, old, de.T.copy(), new, rows, True, count)
         return new, rows.T.reshape(-1, 3, 3), count
-    tangent = np.empty((len(old), 6, 6))
-    assert advance_solids(p, old, de, new, tangent, count)
-    return new, tangent, count
+    tangent = np.empty((len(old), 36))
+    assert advance_points(p, SOLID, old, de.T, new, tangent.T, True, count)
+    return new, tangent.reshape(-1, 6, 6), count
 
 
 @pytest.mark.parametrize("name", MATERIALS)

@@ -112,7 +112,7 @@ def _texts(function: Any) -> list[str]:
 
 
 def _loop(update: Update, width: int) -> Any:
-    """A compiled loop over the points of a section; arrays as in `choice.rod_points`, by their addresses."""
+    """A compiled loop over the points of a section; arrays as in `choice.flow_points`, by their addresses."""
 
     @cfunc(LOOP, **OPTIONS)
     def loop(old: Any, strain: Any, parameters: Any, entries: int, new: Any, tangent: Any, count: Any, m: int) -> int:

@@ -42,6 +42,7 @@ from coilset.model.material.point.groups import (
     keep,
     modulus,
     of_stress,
+    products,
     respond,
     share,
     weight,
@@ -153,13 +154,9 @@ def _begin(law: Parts, of: Points, components: Components, size: int, w: np.ndar
             for j in range(n):
                 w[A + j, k] += gamma * w[back + j, k]
     for k in range(size):
-        nn = ne = ee = 0.0
-        for j in range(n):
-            normal, e = w[NORMAL + j, k], w[STRAIN + j, k]
-            nn += weight(n, j) * normal * normal
-            ne += weight(n, j) * normal * e
-            ee += weight(n, j) * e * e
-        beta = yield_crossing(nn, ne, ee, w[K2, k])
+        na, ea, nn, ne, ee = products(components, w, k)
+        ne, ee = 1.5 * na * ea + ne, 1.5 * ea * ea + ee
+        beta = yield_crossing(1.5 * na * na + nn, ne, ee, w[K2, k])
         steep = ne + beta * ee
         turn = -(1.0 - GAMMA) * beta / steep if (beta > 0.0) & (steep > 0.0) else 0.0
         length = beta + GAMMA * (1.0 - beta)

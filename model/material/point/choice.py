@@ -17,13 +17,14 @@ from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.functions import SPIN
 from coilset.model.material.law.parts import OwnPoints, Parts
 from coilset.model.material.point import back_stresses, return_map
-from coilset.model.material.point.groups import ROD, SOLID, Components
+from coilset.model.material.point.groups import ROD, Components
 from coilset.model.material.point.increment import advance
 from coilset.model.runtime.kernels import KERNEL, njit
 
 
-def rod_points(
+def flow_points(
     law: Any,
+    components: Components,
     old: np.ndarray,
     de: np.ndarray,
     new: np.ndarray,
@@ -31,48 +32,35 @@ def rod_points(
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """One increment of the rod's law at many points, as `return_map.flow_points`, or with another law."""
+    """One increment at many points, as `return_map.flow_points`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
 
 
-def solid_points(law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray) -> bool:
-    """`rod_points` with all six stresses; shapes of `de` (points, 6), of C (points, 6, 6)."""
-    raise NotImplementedError("only compiled loops call it")
-
-
-# strict: would compare annotations, which a lambda has not
-@overload(rod_points, strict=False)
-def _rod_points(
-    law: Any, old: Any, de: Any, new: Any, tangent: Any, with_tangent: Any, count: Any
+# strict: would compare the names of arguments, of which one is the kind of law
+@overload(flow_points, strict=False, jit_options={name: KERNEL[name] for name in ("error_model", "fastmath")})
+def _flow_points(
+    law: Any, components: Any, old: Any, de: Any, new: Any, tangent: Any, with_tangent: Any, count: Any
 ) -> Callable[..., bool]:
     if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, de, new, tangent, with_tangent, count: return_map.flow_points(
-            law, ROD, old, de, new, tangent, with_tangent, count
-        )
-    if law.instance_class is OwnPoints:
-        return lambda law, old, de, new, tangent, with_tangent, count: own_points(law, old, de, new, tangent, count)
-    return lambda law, old, de, new, tangent, with_tangent, count: parts_points(law, ROD, old, de, new, tangent, count)
+        return return_map.flow_points
+    return own_points if law.instance_class is OwnPoints else parts_points
 
 
-@overload(solid_points, strict=False)
-def _solid_points(law: Any, old: Any, de: Any, new: Any, C: Any, count: Any) -> Callable[..., bool]:
-    if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, de, new, C, count: return_map.flow_points(
-            law, SOLID, old, de.T, new, C.reshape((-1, 36)).T, True, count
-        )
-    return lambda law, old, de, new, C, count: parts_points(law, SOLID, old, de.T, new, C.reshape((-1, 36)).T, count)
-
-
-@njit(**KERNEL)
 def own_points(
-    law: OwnPoints, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+    law: OwnPoints,
+    components: Components,
+    old: np.ndarray,
+    de: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+    with_tangent: bool,
+    count: np.ndarray,
 ) -> bool:
-    """One increment of a law of one's own at many points."""
+    """One increment of a law of one's own at many points of a rod."""
     places = old.ctypes, de.ctypes, law.values.ctypes, len(law.values), new.ctypes, tangent.ctypes, count.ctypes
     return law.loop(*places, len(count)) == 1
 
 
-@njit(**KERNEL)
 def parts_points(
     law: Parts,
     components: Components,
@@ -80,6 +68,7 @@ def parts_points(
     de: np.ndarray,
     new: np.ndarray,
     tangent: np.ndarray,
+    with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
     """One increment at many points: of those whose back stresses saturate several at a time, else one by one."""
@@ -111,20 +100,13 @@ def point_map(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: n
 @njit(**KERNEL)
 def advance_points(
     law: Any,
+    components: Components,
     old: np.ndarray,
-    strain: np.ndarray,
+    de: np.ndarray,
     new: np.ndarray,
     tangent: np.ndarray,
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """`rod_points` from Python."""
-    return rod_points(law, old, strain, new, tangent, with_tangent, count)
-
-
-@njit(**KERNEL)
-def advance_solids(
-    law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
-) -> bool:
-    """`solid_points` from Python."""
-    return solid_points(law, old, de, new, C, count)
+    """`flow_points` from Python."""
+    return flow_points(law, components, old, de, new, tangent, with_tangent, count)

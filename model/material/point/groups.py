@@ -14,6 +14,7 @@ import numpy as np
 
 from coilset.model.material.law.parts import MOST_TERMS
 from coilset.model.material.point.local_rows import (
+    END,
     ENDED,
     FLOWS,
     FORM,
@@ -37,6 +38,7 @@ STRESS, STRAIN, DIAGONAL, LEFT = range(FORM, FORM + 4 * LARGEST, LARGEST)
 RIGHT = NORMAL = LEFT + 3 * LARGEST
 BACK = RIGHT + 3 * LARGEST
 OTHERS = BACK + MOST_TERMS * LARGEST  # rows of the law that the points follow
+TANGENT = END  # of three components, in rows that Newton's method no longer needs
 
 
 @njit(**INLINE)
@@ -191,6 +193,22 @@ def _trial(p: np.ndarray, of: Points, components: Components, old: np.ndarray, d
 
 
 @njit(**INLINE)
+def products(components: Components, w: np.ndarray, k: int) -> tuple[float, float, float, float, float]:
+    """n and e of the axial component (0 of six), then n:n, n:e, e:e of the others; e: the elastic increment of T."""
+    n, na, ea = len(components), 0.0, 0.0
+    nn = ne = ee = 0.0
+    for j in range(n):
+        normal, e = w[NORMAL + j, k], w[STRAIN + j, k]
+        if is_axial(n, j):
+            na, ea = normal, e
+        else:
+            nn += weight(n, j) * normal * normal
+            ne += weight(n, j) * normal * e
+            ee += weight(n, j) * e * e
+    return na, ea, nn, ne, ee
+
+
+@njit(**INLINE)
 def _elastic(
     of: Points,
     components: Components,
@@ -242,6 +260,12 @@ def keep(
     n, last, good = len(components), terms - 1, True
     further, bulk = new.shape[1] - n * last, _bulk(of.E, of.G)
     right = np.empty((3, n))
+    for j in range(flow if with_tangent and n == 3 else 0):
+        for i in range(n):
+            a, b, c = w[LEFT + i, j], w[LEFT + LARGEST + i, j], w[LEFT + 2 * LARGEST + i, j]
+            for m in range(n):
+                dyads = a * w[RIGHT + m, j] + b * w[RIGHT + LARGEST + m, j] + c * w[RIGHT + 2 * LARGEST + m, j]
+                w[TANGENT + n * i + m, j] = dyads + (w[DIAGONAL + i, j] * share(n, i) if i == m else 0.0)
     for j in range(flow):
         k, mean = np.uint64(of.first) + place[j], 0.0
         count[k] = int(w[ENDED, j])
@@ -258,7 +282,10 @@ def keep(
                 new[k, further + n * term + i] = w[BACK + n * term + i, j]
             new[k, n + i] = total
         new[k, 2 * n] = w[WORK, j]
-        if with_tangent:
+        if with_tangent and n == 3:
+            for i in range(n * n):
+                tangent[i, k] = w[TANGENT + i, j]
+        elif with_tangent:
             for r in range(3):
                 for m in range(n):
                     right[r, m] = w[RIGHT + LARGEST * r + m, j]

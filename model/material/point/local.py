@@ -91,11 +91,10 @@ def yield_crossing(nn: float, ne: float, ee: float, k2: float) -> float:
     The κ term of (3.1.6) belongs to plastic loading only, so it must not see the elastic part.
     """
     root = ne * ne + ee * (k2 - nn)
-    if root <= 0.0 or (nn >= k2 and ne >= 0.0):
-        return 0.0
-    root = math.sqrt(root)
-    beta = (k2 - nn) / (ne + root) if ne > 0.0 else (root - ne) / ee
-    return min(max(beta, 0.0), 1.0)
+    none = (root <= 0.0) | ((nn >= k2) & (ne >= 0.0))
+    root = math.sqrt(root if root > 0.0 else 0.0)
+    beta = (k2 - nn if ne > 0.0 else root - ne) / (ne + root if ne > 0.0 else ee)
+    return 0.0 if none else min(max(beta, 0.0), 1.0)
 
 
 @njit(**INLINE)

@@ -21,6 +21,7 @@ from coilset.model.material.point.groups import (
     keep,
     modulus,
     of_stress,
+    products,
     respond,
     weight,
 )
@@ -42,7 +43,7 @@ from coilset.model.material.point.local_rows import (
     solve_rows,
     turn_of,
 )
-from coilset.model.runtime.kernels import INLINE, KERNEL, njit
+from coilset.model.runtime.kernels import INLINE, njit
 
 # By which β follows n₀ and e: 1/n₀:e, 0 if it does not.
 SLOPE, ALONG_B, ALONG_L = range(OTHERS, OTHERS + 3)
@@ -50,7 +51,6 @@ P = LEFT + 2 * LARGEST  # plastic strain, before the dyads' last left vector
 ROWS = ALONG_L + 1
 
 
-@njit(**KERNEL)
 def flow_points(
     p: np.ndarray,
     components: Components,
@@ -61,7 +61,7 @@ def flow_points(
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """One increment of the law at many points.
+    """One increment of the law at many points; compiled where `choice` takes it.
 
     Args:
         p: parameter array of the law.
@@ -94,38 +94,25 @@ def flow_points(
             good = False
             for k in range(of.first, first):
                 if count[k] < 0:
-                    new[k] = old[k]
+                    for j in range(new.shape[1]):
+                        new[k, j] = old[k, j]
     return good
 
 
 @njit(**INLINE)
 def _begin(of: Points, components: Components, size: int, w: np.ndarray) -> None:
     """Where the plastic part of the increment begins: β and n₀ there (n₀ + β e), and the Start."""
-    n = len(components)
+    n, ca, cc = len(components), modulus(of, len(components), 0), 2.0 * of.G
     for k in range(size):
-        nn = ne = ee = 0.0
+        na, ea, nn, ne, ee = products(components, w, k)
+        along, square = 1.5 * na * ea + ne, 1.5 * ea * ea + ee
+        beta = yield_crossing(1.5 * na * na + nn, along, square, w[K2, k])
+        rest, steep = 1.0 - beta, along + beta * square
+        w[BETA, k], w[SLOPE, k] = beta, 1.0 / steep if (beta > 0.0) & (steep > 0.0) else 0.0
+        nn, ne = nn + beta * (2.0 * ne + beta * ee), ne + beta * ee
+        keep_start(Start(w[WORK, k], ca, na + beta * ea, rest * ea, cc, nn, rest * ne, rest * rest * ee), w, k)
         for j in range(n):
-            normal, e = w[NORMAL + j, k], w[STRAIN + j, k]
-            nn += weight(n, j) * normal * normal
-            ne += weight(n, j) * normal * e
-            ee += weight(n, j) * e * e
-        beta = yield_crossing(nn, ne, ee, w[K2, k])
-        rest, na, ea = 1.0 - beta, 0.0, 0.0
-        crossing = nn = ne = ee = 0.0
-        for j in range(n):
-            e = w[STRAIN + j, k]
-            normal = w[NORMAL + j, k] + beta * e
-            w[NORMAL + j, k] = normal
-            crossing += weight(n, j) * normal * e
-            if is_axial(n, j):
-                na, ea = normal, rest * e
-            else:
-                nn += weight(n, j) * normal * normal
-                ne += weight(n, j) * normal * e
-                ee += weight(n, j) * e * e
-        w[BETA, k], w[SLOPE, k] = beta, 1.0 / crossing if (beta > 0.0) & (crossing > 0.0) else 0.0
-        ca, cc = modulus(of, n, 0), modulus(of, n, 1)
-        keep_start(Start(w[WORK, k], ca, na, ea, cc, nn, rest * ne, rest * rest * ee), w, k)
+            w[NORMAL + j, k] += beta * w[STRAIN + j, k]
 
 
 @njit(**INLINE)
@@ -137,7 +124,7 @@ def _end(of: Points, components: Components, size: int, w: np.ndarray) -> None:
         for j in range(n):
             t, c, n0, whole = _turn(n, j, w, k), modulus(of, n, j), w[NORMAL + j, k], w[STRAIN + j, k]
             e = (1.0 - beta) * whole
-            strain = (n0 + e - t.phi * n0 - t.y * e) / (c + zeta)
+            strain = 1.0 / (c + zeta) * (n0 + e - t.phi * n0 - t.y * e)
             w[P + j, k] = strain
             w[STRESS + j, k] += whole - c * strain
             w[BACK + j, k] += zeta * strain  # (3.1.8)
@@ -169,7 +156,7 @@ def _tangent(of: Points, components: Components, size: int, w: np.ndarray) -> No
         for j in range(n):
             t, n0, whole, strain = _turn(n, j, w, k), w[NORMAL + j, k], w[STRAIN + j, k], w[P + j, k]
             normal, d = t.phi * n0 + t.y * (1.0 - beta) * whole, t.phi - t.y
-            both = (n0 + normal) / (modulus(of, n, j) + w[LAST_ZETA, k])
+            both = 1.0 / (modulus(of, n, j) + w[LAST_ZETA, k]) * (n0 + normal)
             q = strain - both
             # n:n and ½ (n₀ + n):p by v and by dn
             square, square_0 = 2.0 * t.y * normal, 2.0 * d * normal
@@ -191,7 +178,7 @@ def _tangent(of: Points, components: Components, size: int, w: np.ndarray) -> No
         for j in range(n):
             t, c, n0, whole = _turn(n, j, w, k), modulus(of, n, j), w[NORMAL + j, k], w[STRAIN + j, k]
             scale, e, d = c * of_stress(n, j), (1.0 - beta) * whole, t.phi - t.y
-            m = scale / (c + w[LAST_ZETA, k])
+            m = 1.0 / (c + w[LAST_ZETA, k]) * scale
             w[LEFT + j, k] = -m * beta * w[SLOPE, k] * d * whole
             w[LEFT + LARGEST + j, k] = m * (t.phi_b * n0 + t.y_b * e + dzeta * w[P + j, k])
             w[LEFT + 2 * LARGEST + j, k] = m * (t.phi_l * n0 + t.y_l * e)
