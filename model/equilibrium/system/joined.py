@@ -102,14 +102,15 @@ def _join(
             and _same(of_row, holders[begin[row - 1] : begin[row]])
             and _same(own, indices[indptr[row - 1] : indptr[row]])
         ):
-            before = found[out[row - 1] : count]
-            found[count : count + len(before)] = before
-            count += len(before)
+            for k in range(out[row - 1], count):  # numba takes 3 s to compile the assignment of a slice
+                found[count + k - out[row - 1]] = found[k]
+            count += count - out[row - 1]
             out[row + 1] = count
             continue
-        found[count : count + len(own)] = own
-        seen[own] = row
-        end = count + len(own)
+        end = count
+        for column in own:
+            found[end], seen[column] = column, row
+            end += 1
         for matrix in of_row:
             for unknown in unknowns[first[matrix] : first[matrix + 1]]:
                 if seen[unknown] != row:

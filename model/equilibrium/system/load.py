@@ -208,7 +208,8 @@ def _out_of_balance(
     weight: float,
     F: np.ndarray,
 ) -> None:
-    F[:] = reactions
+    for k in range(len(F)):
+        F[k] = reactions[k]
     for k in range(len(loaded)):
         F[loaded[k]] -= load_factor * forces[k] + (1.0 - load_factor) * before[loaded[k]]
     _miss(held, targets, load_factor, increments, weight, F)
