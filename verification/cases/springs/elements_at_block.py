@@ -44,7 +44,7 @@ SPRINGS: dict[str, dict[str, Any]] = {
         "loading": TO_BLOCK,
     },
 }
-MESHES = {"thesis": (8, 16, 32, 64), "mixed": (8, 16, 32)}
+MESHES = {"thesis": (8, 16, 32, 64, 128), "mixed": (8, 16, 32)}
 USUAL, TOLERANCE, GAIN = 16, 0.005, 5.0
 
 
@@ -126,7 +126,7 @@ def draw(errors: Mapping[tuple[str, str], Sequence[float]]) -> Figure:
                 axes.loglog(MESHES[element], percent, line, color=f"C{number}", ms=5, label=f"{spring}; {element}")
         axes.axhline(0.2, color="0.5", lw=0.8)
         axes.annotate(
-            "accuracy of the steps", (64, 0.2), xytext=(0, -3), textcoords="offset points", va="top", ha="right"
+            "accuracy of the steps", (45, 0.2), xytext=(0, -3), textcoords="offset points", va="top", ha="center"
         )
         axes.set(xlabel="elements a turn", ylabel="error of the force at block in %")
         axes.set_xticks(MESHES["thesis"], [str(number) for number in MESHES["thesis"]])
