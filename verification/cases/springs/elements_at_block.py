@@ -126,7 +126,7 @@ def draw(errors: Mapping[tuple[str, str], Sequence[float]]) -> Figure:
                 axes.loglog(MESHES[element], percent, line, color=f"C{number}", ms=5, label=f"{spring}; {element}")
         axes.axhline(0.2, color="0.5", lw=0.8)
         axes.annotate(
-            "accuracy of the steps", (45, 0.2), xytext=(0, -3), textcoords="offset points", va="top", ha="center"
+            "accuracy of the steps", (60, 0.2), xytext=(0, 2), textcoords="offset points", va="bottom", ha="right"
         )
         axes.set(xlabel="elements a turn", ylabel="error of the force at block in %")
         axes.set_xticks(MESHES["thesis"], [str(number) for number in MESHES["thesis"]])
