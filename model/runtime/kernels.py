@@ -13,9 +13,9 @@ from numba.core import caching
 
 __all__ = ["COMPILED", "INLINE", "KERNEL", "njit"]
 
+# No checks of divisors; no wrapper for C, which nothing calls and takes a tenth of the time.
 COMPILED = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
-# The material's: multiply-add contracted; no wrapper for C, which nothing calls and takes a tenth of the time.
-KERNEL = COMPILED | {"fastmath": {"contract"}}
+KERNEL = COMPILED | {"fastmath": {"contract"}}  # the material's: multiply-add contracted
 INLINE = KERNEL | {"forceinline": True}  # put into their caller
 
 ROOT = Path(__file__).resolve().parents[2]  # the folder that is imported as coilset

@@ -109,9 +109,8 @@ def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
     accuracy, free = setup.limits.accuracy or WALL_FORCE, FREE * result.greatest_force
     for before, step in pairwise(result.steps):
         travel = step.travel_mm - before.travel_mm
-        if step.phase != before.phase or step.progress < 1.0 or travel <= 0.0 or step.force_N <= free:
-            continue
-        if setup.is_force_given(step):  # the height under it is the better known, the steeper the characteristic
+        ends = step.phase == before.phase and step.progress >= 1.0 and travel > 0.0 and step.force_N > free
+        if not ends or setup.is_force_given(step):  # the steeper it is, the smaller is the error of the height there
             continue
         rate = (step.force_N - before.force_N) / travel
         percent = abs(rate) * step.travel_mm / step.force_N
