@@ -43,8 +43,8 @@ find_environment() {
         case " $* " in *' --help '* | *' -h '* | *' --version '* | '  ') printf '%s\n' "$ways" ${near:+"$near"}; exit 0 ;; esac
         [ -z "${COILSET_PYTHON:-}" ] || [ -n "${COILSET_RELEASE:-}" ] ||
             fail "COILSET_PYTHON: ${near:-$first is no Python with DOLFINx >= 0.9}"
-        make_environment
         made=yes
+        make_environment
     fi
     "enter_$kind"
     remember

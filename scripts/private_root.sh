@@ -17,7 +17,11 @@ make_private_root() {
     mkdir -p "$COILSET_CACHE"
     log=$private_root.log
     exec 9> "$private_root.lock"
-    flock -n 9 || { say "another coilset is making the environment; waiting for it ..."; flock 9; }
+    if ! flock -n 9; then
+        say "another coilset is making the environment; waiting for it ..."
+        flock 9
+        ! private_root_complete || made='' # the other one compiles
+    fi
     private_root_complete || install_tools
     private_root_complete || { [ -d "$private_root" ] && add_packages; } || make_it_anew
     exec 9>&-

@@ -11,9 +11,10 @@ from coilset.model.base.errors import InputError
 from coilset.model.runtime.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-# tests that solve springs or solids to the end, or start the command: minutes, where most others take seconds; those
-# of sweeps run with the others, so that both take about as long
+# tests that solve springs or solids to the end, or start the command: minutes, where most others take seconds; both
+# take about as long
 SOLVES = [
+    "api",
     "benchmarks",
     "commands",
     "examples",
@@ -23,6 +24,7 @@ SOLVES = [
     "solid",
     "spring",
     "spring_fit",
+    "sweep",
     "verification",
 ]
 
