@@ -39,7 +39,7 @@ def test_a_release_by_force_goes_on_by_height_where_no_smaller_force_is_near(cas
     assert released[-1].seat_height_mm == pytest.approx(whole.spring.free_length, abs=1e-6)
     way = sorted([(whole.spring.free_length, 0.0), *((step.seat_height_mm, step.force_N) for step in pressed)])
     forces = np.interp([step.seat_height_mm for step in released[1:]], *np.transpose(way))
-    assert forces == pytest.approx([step.force_N for step in released[1:]], rel=0.01)
+    assert forces == pytest.approx([step.force_N for step in released[1:]], rel=0.01, abs=1e-6)
     resumed = resumed_after(case, len(pressed) + 1)
     steps = resumed.run().steps
     assert [step.force_N for step in steps] == pytest.approx([step.force_N for step in whole.result.steps], abs=1e-6)
