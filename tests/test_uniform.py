@@ -8,6 +8,7 @@ import pytest
 from coilset.meshes.springs.manufacture import Relief
 from coilset.model.base.errors import SolveError
 from coilset.model.material import library
+from coilset.model.material.point.loops import with_loop
 from coilset.model.section.rules import polar, upper_half
 from coilset.model.uniform_coil import rod as uniform
 from coilset.model.uniform_coil.past import DISK, coiled
@@ -21,7 +22,7 @@ def coil(law, free=True):
     y, z = 2.5 * np.ascontiguousarray(rule.points.T)
     j = math.hypot(R, h)
     bend, area = R / j**2, np.pi * 6.25 * rule.weights
-    return Coil(law.parameters(), R, h, j, y, z, area, bend, *force_shear(2.5, y, z, bend), True, free)
+    return Coil(with_loop(law.parameters(), 3), R, h, j, y, z, area, bend, *force_shear(2.5, y, z, bend), True, free)
 
 
 def forces(case, q, old_E, points):

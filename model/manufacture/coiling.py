@@ -22,8 +22,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.base.errors import SolveError
+from coilset.model.material.law.loop import AnyLaw
+from coilset.model.material.point.loops import with_loop
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.wire import BEND, TWIST, SectionLaw, Wire
+from coilset.model.section.wire import BEND, TWIST, Wire
 
 LOADING, RELEASE, TWISTS = 40, 4, 4  # increments
 FREE = np.array([0, 1, 2, 4])  # ε, γ12, γ13, κ2 follow while the wire is bent and twisted
@@ -51,7 +53,7 @@ class Coiled:
 
 
 def coil(
-    law: SectionLaw,
+    law: AnyLaw,
     rule: DiskRule,
     radius: float,
     curvature: float,
@@ -59,7 +61,7 @@ def coil(
     row: np.ndarray,
     curved: bool = True,
     guess: tuple[float, float] | None = None,
-    relief: Sequence[SectionLaw] = (),
+    relief: Sequence[AnyLaw] = (),
     surface: np.ndarray | None = None,
 ) -> Coiled:
     """The wire of a spring after coiling and stress relief.
@@ -100,7 +102,7 @@ def coil(
 
 
 def grind(
-    law: SectionLaw, fibres: np.ndarray, shape: np.ndarray, radius: float, curved: bool, states: np.ndarray
+    law: AnyLaw, fibres: np.ndarray, shape: np.ndarray, radius: float, curved: bool, states: np.ndarray
 ) -> np.ndarray:
     """The remaining part of a section with initial stresses after grinding: its states without a resultant.
 
@@ -128,7 +130,7 @@ def winding_torque(tension: float, curvature: float, torsion: float) -> float:
 
 
 def twist(
-    law: SectionLaw,
+    law: AnyLaw,
     rule: DiskRule,
     radius: float,
     curvature: float,
@@ -149,7 +151,7 @@ def twist(
 
 
 def bent(
-    wire: Wire, turned: np.ndarray, end: float, relief: Sequence[SectionLaw], increments: int = LOADING
+    wire: Wire, turned: np.ndarray, end: float, relief: Sequence[AnyLaw], increments: int = LOADING
 ) -> tuple[Wire, tuple[float, float], tuple[float, float]]:
     """The wire after it was turned by θ and φ a length, released and relieved; curvature and torsion, M3, Mt before.
 
@@ -174,6 +176,6 @@ def bent(
         d = wire.step(d, np.arange(6), loaded * (1.0 - k / RELEASE), bend)
     d = np.zeros(6)
     for interval in relief:
-        wire.law = interval
+        wire.law = with_loop(interval, 3)
         d = wire.step(d, np.arange(6), np.zeros(6), end)
     return wire, tight, moments

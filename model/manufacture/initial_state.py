@@ -19,13 +19,13 @@ from coilset.model.manufacture.peening import Layer, peen, peening_warnings
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.law.functions import HEATING, elasticity
 from coilset.model.material.law.law import Law
+from coilset.model.material.law.loop import AnyLaw
 from coilset.model.material.law.parts import Parts
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.kinds import Sections
 from coilset.model.section.outlined_section import WHOLE
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.wire import SectionLaw
 
 DIGITS = 9  # to which sections must agree to have the same past
 INTERVALS = 12  # of a stress relief, equal ones of log(1 + t/t₁), with t₁ = FIRST of it
@@ -37,7 +37,7 @@ START = "point_state", "surface_state"
 class _Past:
     """What all sections of a rod went through: the law without time, that of the relief, the layer, F0 in N."""
 
-    law: SectionLaw
+    law: AnyLaw
     coiled: bool
     relief: tuple[Parts, ...]
     layer: Layer | None
@@ -110,9 +110,9 @@ def _past(rod: Rod, spring: SpringSpec) -> _Past:
     """What the sections of a rod went through; collective."""
     state = {name: rod.state[name].equilibrium for name in START}
     law = rod.sections.law_over_time.over(state, state)
-    plastic = _cold(law.plastic if isinstance(law, Parts) else law)
+    plastic = _cold(law.parts.plastic)
     return _Past(
-        law._replace(plastic=plastic) if isinstance(law, Parts) and not rod.law.returns_cold else plastic,
+        plastic if rod.law.returns_cold else law.parts._replace(plastic=plastic),
         bool(spring.made_by),
         relief_intervals(rod.law, rod.parameters, rod.temperature, spring.relieved),
         None if spring.peening is None else _layer(rod, spring.peening),

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.base.warning import Warning
+from coilset.model.material.law.loop import AnyLaw
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.wire import SectionLaw, Wire
+from coilset.model.section.wire import Wire
 
 INCREMENTS = 20
 RINGS = 3  # in a layer, below which its stress is badly resolved
@@ -35,7 +36,7 @@ class Layer:
 
 
 def peen(
-    law: SectionLaw,
+    law: AnyLaw,
     rule: DiskRule,
     radius: float,
     bend: float,

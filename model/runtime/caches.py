@@ -80,7 +80,7 @@ def _link_when_compiling() -> None:
         """As numba's own, with an empty module in place of the bitcode."""
         name, kind, (code, bitcode) = kept
         engine = target.codegen()._engine
-        engine._defined_symbols.add(function.llvm_cpython_wrapper_name)
+        engine._defined_symbols |= {function.llvm_cpython_wrapper_name, function.llvm_cfunc_wrapper_name}
         empty = binding.parse_assembly("").as_bitcode()
         made = own(target, (name, kind, (code, empty)), function, *rest)
 

@@ -11,12 +11,14 @@ from typing import Any, NamedTuple, Self
 from numba import njit
 from numba.core import caching
 
-__all__ = ["COMPILED", "INLINE", "KERNEL", "njit"]
+__all__ = ["COMPILED", "INLINE", "KERNEL", "PASTED", "njit"]
 
 # No checks of divisors; no wrapper for C, which nothing calls and takes a tenth of the time.
 COMPILED = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 KERNEL = COMPILED | {"fastmath": {"contract"}}  # the material's: multiply-add contracted
 INLINE = KERNEL | {"forceinline": True}  # put into their caller
+# Put into their only caller before it is compiled: numba optimises all of a function once more with each that calls it.
+PASTED = KERNEL | {"inline": "always"}
 
 ROOT = Path(__file__).resolve().parents[2]  # the folder that is imported as coilset
 IMPORTS = re.compile(r"^ *from coilset\.([\w.]+) import (\([^)]*\)|.*)", re.MULTILINE)

@@ -10,8 +10,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.point.choice import flow_points
-from coilset.model.material.point.groups import SOLID
+from coilset.model.material.law.loop import PointLaw, flow_points
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 from coilset.model.section.integration import SUMS
 
@@ -71,7 +70,7 @@ def work_space(points: int, n: int) -> Work:
 
 @njit(**KERNEL)
 def find_warping(
-    p: np.ndarray,
+    law: PointLaw,
     of: Section,
     elastic: Elastic,
     old: np.ndarray,
@@ -88,7 +87,7 @@ def find_warping(
     through both.
 
     Args:
-        p: parameters of the material law, or Parts.
+        law: of the points.
         of, elastic: the section's geometry; elastic sections and points.
         old, old_a: state of its points and its warping at the last equilibrium; not changed.
         a: warping, where the iteration begins; written.
@@ -105,7 +104,7 @@ def find_warping(
         for i in range(n):
             w.step[6 + i] = a[i] - old_a[i]
         count[1] += 1
-        if not forces(p, of, old, new, w):
+        if not forces(law, of, old, new, w):
             return False
         after = 0.0
         if before < math.inf:
@@ -269,11 +268,11 @@ def project(R: float, f: np.ndarray, first: int, size: int, w: np.ndarray, r: np
             r[j], r[n + j], r[2 * n + j] = r[j] + b1, r[n + j] + b2, r[2 * n + j] + b3
 
 
-@njit(**KERNEL, inline="always")  # rather than to compile the law once more
-def forces(p: np.ndarray, of: Section, old: np.ndarray, new: np.ndarray, w: Work) -> bool:
+@njit(**KERNEL)
+def forces(law: PointLaw, of: Section, old: np.ndarray, new: np.ndarray, w: Work) -> bool:
     """Stresses of all points for the step of strains and warping, r = ∫ Bᵀ σ g dA; False if the law has no solution."""
     strains(of, w.step, w.strain)
-    if not flow_points(p, SOLID, old, w.strain.T, new, w.C.reshape((-1, 36)).T, True, w.flow):
+    if not flow_points(law, 6, old, w.strain, new, w.C.reshape((-1, 36)), True, w.flow):
         return False
     integrate(of, new, w.r)
     return True

@@ -3,13 +3,13 @@
 import copy
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
+from coilset.model.material.law.loop import PointLaw
 from coilset.model.runtime.kernels import KERNEL, njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
@@ -58,7 +58,7 @@ class FibreSections:
     ) -> None:
         self.threads = threads or Threads()
         self.radius, self.placement, self.weights, self.curved = radius, placement, rule.weights, curved
-        self.law_over_time = LawOverTime(law, parameters, temperature)
+        self.law_over_time = LawOverTime(law, parameters, temperature, 3)
         self.components += self.law_over_time.columns(self.components[3:6])
         self.y, self.z = np.ascontiguousarray(rule.points.T)
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
@@ -85,7 +85,7 @@ class FibreSections:
 
     def initial_state(self) -> dict[str, np.ndarray]:
         """Unstressed points: `point_state` (cells, sections, points, n_state), and `surface_state` on the surface."""
-        row = self.law_over_time.unstressed(3)
+        row = self.law_over_time.unstressed()
         shape = self.placement.stretch.shape
         return {
             "point_state": np.tile(row, (*shape, len(self.y), 1)),
@@ -150,7 +150,7 @@ class FibreSections:
 
     def _run(
         self,
-        law: Any,
+        law: PointLaw,
         ground: Ground,
         points: tuple[np.ndarray, ...],
         increment: np.ndarray,
@@ -187,7 +187,7 @@ class FibreSections:
 def update_sections(
     ends: np.ndarray,
     part: int,
-    p: np.ndarray,
+    law: PointLaw,
     ground: tuple[np.ndarray, np.ndarray, np.ndarray],
     y: np.ndarray,
     z: np.ndarray,
@@ -213,7 +213,7 @@ def update_sections(
     Args:
         ends: where the parts of all cells begin and end, shape (parts + 1,).
         part: number of the one that is brought there.
-        p: parameters of the material law.
+        law: of the points.
         ground: entries of Ground; as plain tuples they take numba 25 µs less.
         y, z, w: points of the unit disk and weights, shape (points,).
         radius: wire radius of each element, shape (cells,), mm.
@@ -251,7 +251,7 @@ def update_sections(
                 last_bend = curvature[c, g] * R
                 curved_shape(y, z, last_bend, disk_shape)
             if not section(
-                p, fibres, shape, d, old[c, g], new[at, g], strain, C, with_tangent, count, resultant, tangent
+                law, fibres, shape, d, old[c, g], new[at, g], strain, C, with_tangent, count, resultant, tangent
             ):
                 if not spoil:
                     return False

@@ -15,9 +15,8 @@ import math
 
 import numpy as np
 
-from coilset.model.material.point.choice import flow_points
-from coilset.model.material.point.groups import ROD
-from coilset.model.runtime.kernels import KERNEL, njit
+from coilset.model.material.law.loop import PointLaw, flow_points
+from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 FIBRES = 5  # rows of `fibres`: y, z, u, v and area
 SUMS = KERNEL | {"fastmath": {"contract", "reassoc", "nsz"}, "forceinline": True}
@@ -25,9 +24,9 @@ Three = tuple[float, float, float]
 NOTHING = (0.0, 0.0, 0.0)
 
 
-@njit(**KERNEL, inline="always")  # rather than to compile the law once more, as `section`
+@njit(**INLINE)
 def update_points(
-    p: np.ndarray,
+    law: PointLaw,
     fibres: np.ndarray,
     shape: np.ndarray,
     d: np.ndarray,
@@ -41,13 +40,13 @@ def update_points(
     """Advance the points of a section to the end of an increment.
 
     Args:
-        p: parameters of the material law, or Parts.
+        law: of the points.
         fibres: y, z, u, v of the points, mm, and their areas, mm², shape (5, points).
         shape: g, a22, a23, a32, a33 of the points, shape (5, points).
         d: increments of the section strains, shape (6,).
         old, new: states of the points at the start, and at the end, which is written, shape (points, n_state).
         strain: work space, shape (3, points).
-        C, with_tangent, count: as in `return_map.flow_points`.
+        C, with_tangent, count: as in `law.loop.flow_points`.
 
     Returns:
         Whether the law found a solution at all points.
@@ -58,7 +57,7 @@ def update_points(
         strain[0, k] = (d[0] + d[4] * z[k] - d[5] * y[k]) * inverse
         strain[1, k] = (shape[1, k] * d[1] + shape[2, k] * d[2] - d[3] * v[k]) * inverse
         strain[2, k] = (shape[3, k] * d[1] + shape[4, k] * d[2] + d[3] * u[k]) * inverse
-    return flow_points(p, ROD, old, strain, new, C, with_tangent, count)
+    return flow_points(law, 3, old, strain, new, C, with_tangent, count)
 
 
 @njit(**SUMS)
@@ -127,9 +126,9 @@ def tangents(fibres: np.ndarray, shape: np.ndarray, C: np.ndarray, D: np.ndarray
         D[1, 1 + j], D[2, 1 + j], D[3, 1 + j] = t1[j], t2[j], t3[j]
 
 
-@njit(**KERNEL, inline="always")
+@njit(**KERNEL)
 def section(
-    p: np.ndarray,
+    law: PointLaw,
     fibres: np.ndarray,
     shape: np.ndarray,
     d: np.ndarray,
@@ -147,7 +146,7 @@ def section(
     Returns:
         False if the law found no solution at some point or the strains are no numbers.
     """
-    if not update_points(p, fibres, shape, d, old, new, strain, C, with_tangent, count):
+    if not update_points(law, fibres, shape, d, old, new, strain, C, with_tangent, count):
         return False
     resultants(fibres, shape, new, s)
     if with_tangent:

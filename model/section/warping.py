@@ -25,8 +25,8 @@ from coilset.meshes.springs.placement import Placement
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.functions import ROWS_START, SHEAR, YOUNG
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.choice import flow_points
-from coilset.model.material.point.groups import SOLID, hooke
+from coilset.model.material.law.loop import PointLaw, flow_points
+from coilset.model.material.point.groups import hooke
 from coilset.model.runtime.kernels import njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
@@ -91,7 +91,7 @@ class WarpingSections:
     ) -> None:
         self.threads = threads or Threads()
         self.radius, self.placement = radius, placement
-        self.law_over_time = LawOverTime(law, parameters, temperature)
+        self.law_over_time = LawOverTime(law, parameters, temperature, 6)
         self.components += self.law_over_time.columns(self.components[6:12])
         outline = outline_of(rule)
         basis = Basis.of_disk(degree) if outline is None else outline.basis(degree)
@@ -124,7 +124,7 @@ class WarpingSections:
         `warping` are the a, shape (cells, sections, unknowns), and `warping_slope` is da/de, shape (cells, sections,
         unknowns, 6).
         """
-        row = self.law_over_time.unstressed(6)
+        row = self.law_over_time.unstressed()
         shape = self.placement.stretch.shape
         return {
             "point_state": np.tile(row, (*shape, self.weights.shape[1], 1)),
@@ -202,7 +202,7 @@ def _geometry(which: np.ndarray, radius: np.ndarray, placement: Placement) -> tu
 def update_sections(
     ends: np.ndarray,
     part: int,
-    p: np.ndarray,
+    law: PointLaw,
     at: Tables,
     elastic: Elastic,
     de: np.ndarray,
@@ -222,7 +222,7 @@ def update_sections(
 
     Args:
         ends, part: as in `fibres.update_sections`.
-        p: parameters of the material law.
+        law: of the points.
         at: geometry of the sections.
         elastic: stiffness of elastic sections, and of elastic points.
         de, placement, stretch, s, D: as in `fibres.update_sections`.
@@ -248,7 +248,7 @@ def update_sections(
                     a[c, g, m] = old_a[c, g, m]
                     for j in range(6):
                         a[c, g, m] += follow * old_slope[c, g, m, j] * w.step[j]
-                good = find_warping(p, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
+                good = find_warping(law, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
                 if good:
                     break
             if not good:
@@ -265,7 +265,7 @@ def update_sections(
 def update_surface(
     ends: np.ndarray,
     part: int,
-    p: np.ndarray,
+    law: PointLaw,
     at: Tables,
     de: np.ndarray,
     placement: np.ndarray,
@@ -283,5 +283,5 @@ def update_surface(
             for j in range(n):
                 w.step[6 + j] = da[c, g, j]
             strains(of, w.step, w.strain)
-            flow_points(p, SOLID, old[c, g], w.strain.T, new[c, g], w.C.reshape((-1, 36)).T, True, w.flow)
+            flow_points(law, 6, old[c, g], w.strain, new[c, g], w.C.reshape((-1, 36)), True, w.flow)
             spoil_failed(w.flow, new[c, g])

@@ -5,23 +5,21 @@ import math
 import numpy as np
 
 from coilset.model.base.errors import SolveError
-from coilset.model.material.law.parts import Parts
-from coilset.model.material.point.choice import advance_points
-from coilset.model.material.point.groups import ROD
+from coilset.model.material.law.loop import AnyLaw
+from coilset.model.material.point.loops import advance_points, with_loop
 from coilset.model.section.integration import section
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 
 TWIST, BEND = 3, 5  # φ′ and κ3
 LOCAL = 25
-SectionLaw = np.ndarray | Parts
 
 
 class Wire:
     """One section, on its way.
 
     Args:
-        law: as the compiled loops take it, `LawOverTime.over`.
+        law: of its points, with its loop or without.
         fibres: y, z, u, v and areas of its points, see `integration`.
         radius: of the wire, mm.
         curved: do the fibres get longer and shorter as the wire is bent, see `shape`?
@@ -31,14 +29,15 @@ class Wire:
 
     def __init__(
         self,
-        law: SectionLaw,
+        law: AnyLaw,
         fibres: np.ndarray,
         radius: float,
         curved: bool,
         states: np.ndarray,
         own_shape: np.ndarray | None = None,
     ) -> None:
-        self.law, self.fibres, self.area, self.curved, self.radius = law, fibres, fibres[4], curved, radius
+        self.law, self.radius, self.curved = with_loop(law, 3), radius, curved
+        self.fibres, self.area = fibres, fibres[4]
         self.disk, self._own_shape = np.ascontiguousarray(fibres[:2] / radius), own_shape
         self.states = np.tile(states, (len(self.area) // len(states), 1))
         self.stretch = 1.0
@@ -51,7 +50,7 @@ class Wire:
     @classmethod
     def of_disk(
         cls,
-        law: SectionLaw,
+        law: AnyLaw,
         rule: DiskRule,
         radius: float,
         curved: bool,
@@ -121,6 +120,6 @@ class Wire:
         held, C, count = self._room
         held[:], new = 0.0, np.empty_like(self.states)
         held[0] = -strain
-        if not advance_points(self.law, ROD, self.states, held, new, C, False, count):
+        if not advance_points(self.law, 3, self.states, held, new, C, False, count):
             raise SolveError("the law found no solution")
         self.states = new

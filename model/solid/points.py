@@ -1,33 +1,15 @@
 """The material law at the integration points of the solid."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.choice import flow_points
-from coilset.model.material.point.groups import SOLID
-from coilset.model.runtime.kernels import njit
+from coilset.model.material.point.loops import advance_points
 from coilset.model.solid.kinematics import push_forward, stretches
 
-
-@njit(cache=True)
-def update_points(p: Any, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
-    """Integrate the law over the increment at all points.
-
-    Args:
-        p: parameters of the law, or Parts.
-        old, new: point states, shape (points, n_state); `new` is written.
-        strain: increment ln U, components 11, 22, 33, 12, 13, 23 with doubled shear, shape (points, 6).
-        C: written, dσ/dε for strain components with doubled shear, shape (points, 6, 6), MPa.
-
-    Returns:
-        0, or -1 if the law found no solution at some point.
-    """
-    rows, count = C.reshape((-1, 36)).T, np.empty(len(strain), np.int64)
-    return 0 if flow_points(p, SOLID, old, strain.T, new, rows, True, count) else -1
+COMPONENTS = 6
 
 
 class MaterialPoints:
@@ -44,21 +26,28 @@ class MaterialPoints:
     def __init__(self, law: Law, temperature: float | None = None) -> None:
         self.law = law
         self.temperature = law.reference_temperature if temperature is None else temperature
-        self._over_time = LawOverTime(law, law.parameters(temperature), temperature)
+        self._over_time = LawOverTime(law, law.parameters(temperature), temperature, COMPONENTS)
         self.in_time = self._over_time.in_time
         self.pass_time({}, {})
 
     def initial_state(self, points: int) -> np.ndarray:
         """States of unstressed points, shape (points, n_state); stress and back stress come first, 6 entries each."""
-        return np.tile(self._over_time.unstressed(6), (points, 1))
+        return np.tile(self._over_time.unstressed(), (points, 1))
 
     def pass_time(self, start: Mapping[str, np.ndarray], end: Mapping[str, np.ndarray]) -> None:
         """Let increments from now on lead from one state to another, with the times in their `clock` entries."""
         self._point_law = self._over_time.over(start, end)
 
     def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
-        """Write new point states and moduli, see `update_points`; returns False if the law found no solution."""
-        return update_points(self._point_law, old, strain, new, C) == 0
+        """Write new point states and moduli; returns False if the law found no solution at some point.
+
+        Args:
+            old, new: point states, shape (points, n_state).
+            strain: increment ln U, components 11, 22, 33, 12, 13, 23 with doubled shear, shape (points, 6).
+            C: dσ/dε for strain components with doubled shear, shape (points, 6, 6), MPa.
+        """
+        rows, count = C.reshape(-1, COMPONENTS**2), np.empty(len(strain), np.int64)
+        return bool(advance_points(self._point_law, COMPONENTS, old, strain, new, rows, True, count))
 
 
 def respond(

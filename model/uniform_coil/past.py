@@ -36,7 +36,7 @@ def coiled(one: np.ndarray, law: Law, relief: Relief | None, temperature: float 
     at = law.reference_temperature if temperature is None else temperature
     parameters = law.parameters(at)
     intervals = relief_intervals(law, parameters, at, relief, INTERVALS)
-    virgin = LawOverTime(law, parameters, at).unstressed(3)
+    virgin = LawOverTime(law, parameters, at, 3).unstressed()
     d, D, pitch, _ = one
     wanted = np.array([0.5 * D, pitch / (2.0 * np.pi)])
     wanted /= wanted @ wanted  # curvature and torsion

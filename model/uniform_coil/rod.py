@@ -24,6 +24,8 @@ import numpy as np
 from coilset.model.base.errors import SolveError
 from coilset.model.material.creep.in_time import LawOverTime, law_in_time
 from coilset.model.material.law.law import Law
+from coilset.model.material.law.loop import PointLaw
+from coilset.model.material.point.loops import with_loop
 from coilset.model.runtime.kernels import njit
 from coilset.model.section.rules import DiskRule, polar, upper_half
 from coilset.model.uniform_coil.section import RISE, Coil, force_shear, step
@@ -73,7 +75,7 @@ def unloaded(coils: np.ndarray, law: Law, rule: DiskRule, temperature: float | N
     n = len(coils)
     radius, rise = 0.5 * coils[:, 1], coils[:, 2] / (2.0 * np.pi)
     q = np.stack([radius, np.arctan2(rise, radius), rise, np.ones(n)], axis=1)
-    row = LawOverTime(law, law.parameters(temperature), temperature).unstressed(3)
+    row = LawOverTime(law, law.parameters(temperature), temperature, 3).unstressed()
     points = np.tile(row, (n, len(rule), 1))
     return UniformState(coils, q, points, np.zeros(n), np.zeros(n), np.zeros((n, 4)), np.zeros((n, 4, 4)))
 
@@ -118,7 +120,7 @@ def press(
     found = np.empty(targets.shape)
     y, z = np.ascontiguousarray(rule.points.T)
     lost = _press(
-        law.point_law(temperature),
+        with_loop(law.point_law(temperature), 3),
         y,
         z,
         rule.weights,
@@ -173,7 +175,7 @@ def hold(
         after = in_time.clock(float(hour), float(clock[1]), clock)
         over, clock = in_time.over(clock, after), after
         for i, one in enumerate(state.coils):
-            coil, q = _coil(over, y, z, rule.weights, one, False, free_ends, False), state.q[i]
+            coil, q = _coil(with_loop(over, 3), y, z, rule.weights, one, False, free_ends, False), state.q[i]
             good, state.force[i], state.torque[i] = step(
                 coil, q[RISE], True, q, state.points[i], new, state.sections[i], state.tangents[i]
             )
@@ -190,7 +192,7 @@ def _lost(coil: np.ndarray) -> SolveError:
 
 @njit(cache=True)
 def _coil(
-    p: np.ndarray, y: np.ndarray, z: np.ndarray, w: np.ndarray, one: np.ndarray, by_force: bool, free: bool, plain: bool
+    law: PointLaw, y: np.ndarray, z: np.ndarray, w: np.ndarray, one: np.ndarray, by_force: bool, free: bool, plain: bool
 ) -> Coil:
     """One coil and how it is driven."""
     d, D, pitch, _ = one
@@ -199,12 +201,12 @@ def _coil(
     across, along = np.zeros_like(y), np.ones_like(y)
     if not plain:
         across, along = force_shear(0.5 * d, 0.5 * d * y, 0.5 * d * z, bend)
-    return Coil(p, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, across, along, by_force, free)
+    return Coil(law, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, across, along, by_force, free)
 
 
 @njit(cache=True)
 def _press(
-    p: np.ndarray,
+    law: PointLaw,
     y: np.ndarray,
     z: np.ndarray,
     w: np.ndarray,
@@ -225,7 +227,7 @@ def _press(
     new = np.empty_like(points[0])
     for i in range(len(coils)):
         pitch, turns = coils[i, 2:]
-        coil, last = _coil(p, y, z, w, coils[i], by_force, free, plain), 0.0
+        coil, last = _coil(law, y, z, w, coils[i], by_force, free, plain), 0.0
         h = coil.h
         for k in range(targets.shape[1]):
             start, end = force[i], targets[i, k]

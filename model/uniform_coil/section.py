@@ -8,8 +8,7 @@ from collections import namedtuple
 
 import numpy as np
 
-from coilset.model.material.point.choice import flow_points
-from coilset.model.material.point.groups import ROD
+from coilset.model.material.law.loop import flow_points
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 from coilset.model.section.shape import shear_by_force
 
@@ -18,9 +17,9 @@ MAX_ITERATIONS = 25
 PRECISION = 1e-9  # out-of-balance force over that which the step puts on the coil
 ROUNDING = 1e-12  # below which, times the maximum resultant, nothing is out of balance
 
-# One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points;
+# One coil and how it is driven: the law; radius R, rise h, j = √(R² + h²); places and areas of the points;
 # dm/dy, R/j² or, for a plain section, 0; m ∂(γ₁₂, γ₁₃)/∂Γ₃ at the points.
-Coil = namedtuple("Coil", "p R h j y z area bend across along by_force free")
+Coil = namedtuple("Coil", "law R h j y z area bend across along by_force free")
 
 
 @njit(cache=True)
@@ -96,7 +95,7 @@ def integrate(
         strain[0, k] = math.log(stretched / before)
         strain[1, k] = (coil.across[k] * (E[1] - old_E[1]) + (E[2] - old_E[2]) * z) / m
         strain[2, k] = (coil.along[k] * (E[1] - old_E[1]) - y * (E[2] - old_E[2])) / m
-    if not flow_points(coil.p, ROD, old, strain, new, tangent, True, count):
+    if not flow_points(coil.law, 3, old, strain, new, tangent, True, count):
         return False
     for k in range(points):
         y, z, across, along = coil.y[k], coil.z[k], coil.across[k], coil.along[k]

@@ -16,8 +16,9 @@ from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.material.point import increment, points
-from coilset.model.material.point.choice import advance_points, point_map
-from coilset.model.material.point.groups import ROD, SOLID
+from coilset.model.material.point.loops import follow, with_loop
+from coilset.model.material.point.stage import ROOM
+from coilset.model.runtime.kernels import KERNEL, njit
 
 COLD, WARM, ALPHA = 293.15, 473.15, 1.2e-5
 MODULI = {COLD: (80000.0, 0.29), WARM: (74000.0, 0.31)}
@@ -57,11 +58,9 @@ def law_of(entries, isotropic="none", kinematic="none"):
 
 def advance(law, state, de, before, after):
     """One increment over the time between two clocks; state and tangent."""
-    new, C = np.full_like(state, np.nan), np.empty((len(de), len(de)))
-    over = CreepLaw(law.data.creep, law.parts()).over(before, after)
-    count = point_map(over, state, de, new, C)
-    assert count >= 0
-    return new, C
+    new, C, count = follow(CreepLaw(law.data.creep, law.parts()).over(before, after), state[None], de[None])
+    assert count[0] >= 0
+    return new[0], C[0]
 
 
 def unstressed(components, temperature=COLD):
@@ -258,22 +257,17 @@ def test_no_time_is_the_return_mapping(components):
     """Without time the law is the parameter array; rows with creep's columns take the same way, and keep them."""
     law = library.load("ck15")
     creeping = Law(law.data.model_copy(update={"creep": law_of(CREEP).data.creep}))
-    over_time = LawOverTime(creeping, creeping.parameters(), None)
+    over_time = LawOverTime(creeping, creeping.parameters(), None, components)
     clock = {"clock": np.array([3.0, COLD, 2.0])}
     p = over_time.over(clock, clock)
-    assert isinstance(p, np.ndarray)
+    assert p.address == with_loop(law.parameters(), components).address
     rng, state = np.random.default_rng(2), points.initial_state(law, 1, components)
-    row = over_time.unstressed(components)[0]
+    row = over_time.unstressed()[0]
     row[-1] = 1e-4
     for _ in range(10):
         de = 1e-3 * rng.normal(size=components)
         state, tangent, _ = points.update(law, state, de[None])
-        new, C, count = np.full_like(row[None], np.nan), np.empty((components, components)), np.empty(1, np.int64)
-        if components == 3:
-            assert advance_points(p, ROD, row[None], de[:, None], new, C.reshape(9, 1), True, count)
-        else:
-            assert advance_points(p, SOLID, row[None], de[None].T, new, C.reshape(1, 36).T, True, count)
-        row = new[0]
+        (row,), (C,), _ = follow(p, row[None], de[None])
         assert row[:-2].tolist() == state[0].tolist()
         assert C.tolist() == tangent[0].tolist()
     assert row[-2:].tolist() == [COLD, 1e-4]
@@ -308,6 +302,12 @@ def test_tangent(components, entries, yielding):
     assert (flowed > 0) == yielding
 
 
+@njit(**KERNEL)
+def by_iteration(law, old, de, new, C):
+    """One increment, never in closed form."""
+    return increment.advance(law, old, de, new, C, np.empty(1, ROOM))
+
+
 @pytest.mark.parametrize("entries", [CREEP, GAROFALO, CREEP | {"hardening": "time"}])
 @pytest.mark.parametrize("yielding", [False, True])
 def test_both_ways_through_a_rods_point(entries, yielding):
@@ -322,12 +322,9 @@ def test_both_ways_through_a_rods_point(entries, yielding):
             state, _ = advance(law, start, size * _unit(rng, 3), before, creeping.clock(1.0, COLD + 20, before))
             middle = creeping.clock(1.0, COLD + 20, before)
             over = creeping.over(middle, creeping.clock(1.0 + hours, COLD + 60, middle))
-            de, found = 0.3 * size * _unit(rng, 3), []
-            for way in (point_map, increment.advance):
-                new, C = np.full_like(state, np.nan), np.empty((3, 3))
-                assert way(over, state, de, new, C) >= 0
-                found.append((new, C))
-            (new, C), (other, D) = found
+            de, other, D = 0.3 * size * _unit(rng, 3), np.empty_like(state), np.empty((3, 3))
+            (new,), (C,), _ = follow(over, state[None], de[None])
+            assert by_iteration(over, state, de, other, D) >= 0
             np.testing.assert_allclose(new[:3], other[:3], rtol=1e-8, atol=1e-7)
             np.testing.assert_allclose(new[3:], other[3:], rtol=1e-7, atol=1e-14)
             np.testing.assert_allclose(C, D, atol=1e-6 * law.E)

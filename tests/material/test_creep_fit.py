@@ -15,7 +15,7 @@ from coilset.model.material.identification import creep_fit
 from coilset.model.material.identification.relaxation_tests import Readings, read_relaxation
 from coilset.model.material.identification.relaxing import loss
 from coilset.model.material.law.file import Creep
-from coilset.model.material.point.choice import point_map
+from coilset.model.material.point.loops import follow
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.time import creep_fit as studies
 
@@ -66,17 +66,18 @@ def test_loss_of_a_wire_in_tension(form, constants):
     """As the law's own integration at a point finds it, with steps equal in log t."""
     law, temperature, stress = library.load("creeping"), 393.15, 700.0
     creep = CreepLaw(Creep(form=form, **constants), law.parts(law.parameters(temperature)))
-    state, new, C = np.zeros(9), np.zeros(9), np.empty((3, 3))
-    state[0], state[7] = stress, temperature
+    state = np.zeros((1, 9))
+    state[0, [0, 7]] = stress, temperature
     clock = creep.clock(0.0, temperature)
     for time in np.geomspace(1e-12, 100.0, 300):
         after = creep.clock(time, temperature, clock)
-        assert point_map(creep.over(clock, after), state, np.zeros(3), new, C) >= 0
-        state[:], clock = new, after
+        state, _, count = follow(creep.over(clock, after), state, np.zeros((1, 3)))
+        assert count[0] >= 0
+        clock = after
     tests = Readings("tension", np.array([stress]), np.array([temperature]), np.array([100.0]), np.zeros(1))
     found = exact(law, tests, constants, form).loss[0]
     assert found > 5.0
-    assert found == pytest.approx(100.0 * (1.0 - state[0] / stress), rel=3e-3)
+    assert found == pytest.approx(100.0 * (1.0 - state[0, 0] / stress), rel=3e-3)
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say():

@@ -15,7 +15,7 @@ from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.functions import CHANGE, TEMPERATURE
 from coilset.model.material.law.law import Law
 from coilset.model.material.point import points
-from coilset.model.material.point.increment import advance
+from coilset.model.material.point.loops import follow
 from coilset.verification.references.point_rates import PointRates, Segment
 
 COLD, HOT, CREPT = 293.15, 493.15, 1e-5
@@ -104,9 +104,9 @@ class Point:
         return law
 
     def mapped(self, law, de):
-        new, C = np.full_like(self.state, np.nan), np.empty((self.n, self.n))
-        assert advance(law, self.state, de, new, C) >= 0
-        return new, C
+        new, C, count = follow(law, self.state[None], de[None])
+        assert count[0] >= 0
+        return new[0], C[0]
 
     def go(self, de, seconds, warming=0.0):
         self.state, _ = self.mapped(self.over(seconds, warming), de)

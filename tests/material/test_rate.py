@@ -8,7 +8,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.material.creep.law import RateLaw
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.increment import advance as advance_point
+from coilset.model.material.point.loops import follow
 
 YIELD, G, NU = 400.0, 80000.0, 0.3
 SLOW, FAST = 1e12, 1e-12  # seconds that an increment takes
@@ -40,9 +40,9 @@ def advance(law, state, de, seconds):
     parts = law.parts()
     if seconds is not None:
         parts = RateLaw(law.data.rate, parts).over(np.zeros(3), np.array([seconds / 3600.0, 293.15, 0.0]))
-    new, C = np.full_like(state, np.nan), np.empty((len(de), len(de)))
-    assert advance_point(parts, state, de, new, C) >= 0
-    return new, C
+    new, C, count = follow(parts, state[None], de[None])
+    assert count[0] >= 0
+    return new[0], C[0]
 
 
 def unit(rng, n):

@@ -6,7 +6,8 @@ import numpy as np
 
 from coilset.model.material.creep.law import CREEP_COLUMNS, TEMPERATURE, CreepLaw, RateLaw
 from coilset.model.material.law.law import Law
-from coilset.model.material.law.parts import Parts
+from coilset.model.material.law.loop import PointLaw
+from coilset.model.material.point.loops import with_loop
 from coilset.model.material.point.points import initial_state
 
 
@@ -25,15 +26,18 @@ class LawOverTime:
         law: the material.
         parameters: of the law at the points' temperature.
         temperature: K, of the points at the start; None: the material's first.
+        components: stresses of a point, 3 or 6.
 
     Attributes:
         in_time: CreepLaw, RateLaw, or None for a material that does not depend on time.
     """
 
-    def __init__(self, law: Law, parameters: np.ndarray, temperature: float | None) -> None:
-        self._law, self._temperature = law, temperature
+    def __init__(self, law: Law, parameters: np.ndarray, temperature: float | None, components: int) -> None:
+        self._law, self._temperature, self._components = law, temperature, components
         point_law = law.point_law(temperature)
-        self._point_law = parameters if isinstance(point_law, np.ndarray) else law.parts(parameters)
+        self._point_law = with_loop(
+            parameters if isinstance(point_law, np.ndarray) else law.parts(parameters), components
+        )
         self.in_time = law_in_time(law, parameters)
 
     def columns(self, back_stress: tuple[str, ...]) -> tuple[str, ...]:
@@ -41,8 +45,9 @@ class LawOverTime:
         further = tuple(f"{name}_{term}" for term in range(1, self._law.n_terms) for name in back_stress)
         return (CREEP_COLUMNS if self._law.data.creep else ()) + further
 
-    def unstressed(self, components: int) -> np.ndarray:
-        """The row of an unstressed point of 3 or 6 stresses, shape (1, columns)."""
+    def unstressed(self) -> np.ndarray:
+        """The row of an unstressed point, shape (1, columns)."""
+        components = self._components
         row = initial_state(self._law, 1, components, self._temperature)
         if self._law.data.creep is None:
             return row
@@ -50,13 +55,15 @@ class LawOverTime:
         own, more = 2 * components + 1, components * max(self._law.n_terms - 1, 0)
         return np.concatenate([row[:, :own], [[start, 0.0]], np.zeros((1, more))], axis=1)
 
-    def over(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> np.ndarray | Parts:
+    def over(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> PointLaw:
         """The law from one state to the next; without a `clock` between them it is the law without time.
 
         To the return mapping, a row with the columns of creep is one with a temperature of its own.
         """
         law = self._while_time_passes(start, trial)
-        return self._point_law if law is None else law.over(start["clock"], trial["clock"])
+        if law is None:
+            return self._point_law
+        return with_loop(law.over(start["clock"], trial["clock"]), self._components)
 
     def growth(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> float:
         """Thermal strain of all points from one state to the next, where the law itself takes it off their strains."""

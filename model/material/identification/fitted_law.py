@@ -11,8 +11,9 @@ import numpy as np
 
 from coilset.model.material.identification.experiments import COMPONENTS, Test
 from coilset.model.material.law import functions as fn
-from coilset.model.material.law.parts import CREEP_ENTRIES, Parts
-from coilset.model.material.point.increment import advance
+from coilset.model.material.law.loop import PointLaw, flow_points
+from coilset.model.material.law.parts import simple
+from coilset.model.material.point.loops import with_loop
 from coilset.model.runtime.kernels import njit
 
 SUBSTEP = 1e-3  # maximum strain increment of the simulation
@@ -24,25 +25,26 @@ Variables = Mapping[str, float]
 
 
 @njit(**fn.KERNEL)
-def _simulate(law: Parts, strain: np.ndarray, stress: np.ndarray) -> float:
+def _simulate(law: PointLaw, strain: np.ndarray, stress: np.ndarray) -> float:
     """Stress along a strain path, in sub-steps of fixed size, smooth in the constants.
 
     Returns:
         b* at the end, -1 if the law cannot follow the path.
     """
-    y, new, d, C = np.zeros(7), np.zeros(7), np.zeros(3), np.empty((3, 3))
+    y, new, d, C, count = np.zeros((1, 7)), np.zeros((1, 7)), np.zeros((3, 1)), np.empty((9, 1)), np.zeros(1, np.int64)
     e = g = 0.0
     for i in range(strain.shape[0]):
         de, dg = strain[i, 0] - e, strain[i, 1] - g
         e, g = strain[i, 0], strain[i, 1]
         n = max(1, math.ceil(max(abs(de), abs(dg)) / SUBSTEP))
-        d[0], d[1] = de / n, dg / n
+        d[0, 0], d[1, 0] = de / n, dg / n
         for _ in range(n):
-            if advance(law, y, d, new, C) < 0:
+            if not flow_points(law, 3, y, d, new, C, True, count):
                 return -1.0
-            y[:] = new
-        stress[i, 0], stress[i, 1] = y[0], y[1]
-    return y[6]
+            for j in range(7):
+                y[0, j] = new[0, j]
+        stress[i, 0], stress[i, 1] = y[0, 0], y[0, 1]
+    return y[0, 6]
 
 
 class FittedLaw:
@@ -86,8 +88,7 @@ class FittedLaw:
     def follow(self, values: Variables, test: Test) -> tuple[np.ndarray, float]:
         """Stress along a test, infinite if the law cannot follow it, and b* at its end."""
         stress = np.zeros_like(test.stress)
-        parts = Parts(self.parameters(values), np.zeros((1, 0, 2)), np.zeros(CREEP_ENTRIES))
-        work = _simulate(parts, test.strain, stress)
+        work = _simulate(with_loop(simple(self.parameters(values)), 3), test.strain, stress)
         if work < 0:
             stress[:] = np.inf
         return stress, work

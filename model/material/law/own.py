@@ -17,19 +17,18 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from numba import carray, cfunc, types
+from numba import cfunc
 
 from coilset.model.material import library
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
+from coilset.model.material.law.loop import LOOP, PointLaw
 from coilset.model.material.law.own_checks import check_law
-from coilset.model.material.law.parts import OwnPoints
+from coilset.model.material.law.parts import simple
 from coilset.model.runtime.kernels import njit
 
 Update = Callable[..., bool]
 REPORTED = 4  # B11, B12, B13 and b
-PLACE = types.CPointer(types.float64)
-LOOP = types.int64(PLACE, PLACE, PLACE, types.int64, PLACE, PLACE, types.CPointer(types.int64), types.int64)
 OPTIONS: dict[str, Any] = {"error_model": "numpy"}
 
 
@@ -64,7 +63,7 @@ class OwnLaw(Law):
         data |= {"name": name, "description": "a law given from Python", "source": "coilset.api.Law"}
         data["temperatures"][0]["elasticity"] |= {"G": G, "nu": min(max(0.5 * E / G - 1.0, 0.0), 0.49)}
         super().__init__(MaterialFile.model_validate(data))
-        self._loop = _loop(self.update, self.width)
+        self._loop = _loop(self.update)
 
     @property
     def E(self) -> float:
@@ -93,7 +92,7 @@ class OwnLaw(Law):
 
     def parts(self, parameters: np.ndarray | None = None) -> Any:
         """What the compiled loops take as the law."""
-        return OwnPoints(self._loop, self.values)
+        return PointLaw(self._loop.address, simple(self.values))
 
     def content(self) -> bytes:
         """The function's text and its parameters, for a digest."""
@@ -111,24 +110,20 @@ def _texts(function: Any) -> list[str]:
     return texts + [text for one in held if hasattr(one, "py_func") for text in _texts(one)]
 
 
-def _loop(update: Update, width: int) -> Any:
-    """A compiled loop over the points of a section; arrays as in `choice.flow_points`, by their addresses."""
+def _loop(update: Update) -> Any:
+    """A compiled loop over points, as `flow_points`."""
 
     @cfunc(LOOP, **OPTIONS)
-    def loop(old: Any, strain: Any, parameters: Any, entries: int, new: Any, tangent: Any, count: Any, m: int) -> int:
-        before, after = carray(old, (m, 3 + width)), carray(new, (m, 3 + width))
-        increments, rows = carray(strain, (3, m)), carray(tangent, (9, m))
-        values, found = carray(parameters, (entries,)), carray(count, (m,))
-        one, C, good = np.empty(3), np.empty((3, 3)), 1
-        for k in range(m):
-            one[0], one[1], one[2] = increments[0, k], increments[1, k], increments[2, k]
-            solved = update(before[k, :3], before[k, 3:], one, values, after[k, :3], after[k, 3:], C)
-            found[k] = 1 if solved else -1
-            if not solved:
-                good = 0
+    def loop(law: Any, n: int, old: Any, strain: Any, new: Any, tangent: Any, with_tangent: bool, count: Any) -> bool:
+        one, C, good = np.empty(3), np.empty((3, 3)), True
+        for k in range(len(count)):
+            one[0], one[1], one[2] = strain[0, k], strain[1, k], strain[2, k]
+            solved = update(old[k, :3], old[k, 3:], one, law.plastic, new[k, :3], new[k, 3:], C)
+            count[k] = 1 if solved else -1
+            good = good and solved
             for i in range(3):
                 for j in range(3):
-                    rows[3 * i + j, k] = C[i, j]
+                    tangent[3 * i + j, k] = C[i, j]
         return good
 
     return loop

@@ -1,19 +1,23 @@
-"""What the point problem is put together from, as arrays for the kernels; see `coilset.model.material.point.stage`."""
+"""The numbers of a law, as arrays for the kernels; see `coilset.model.material.point.stage`."""
 
 from collections import namedtuple
+
+import numpy as np
 
 from coilset.model.material.law.functions import HEATING, N_ROWS, ROW_LENGTH, ROWS_START, table_place
 from coilset.model.runtime.kernels import INLINE, njit
 
 CREEP_ENTRIES, MOST_TERMS = 9, 8  # of the array of creep; back stresses that saturate
-# What the law's kernels take in the place of the parameter array, where the exponential return map does not suffice:
-# that array; ⅔Cᵢ and γᵢ of the back stresses that saturate, shape (temperatures, terms, 2), no terms: the one of ζ, or
-# none; and the array of creep (`creep.flow`), whose time is 0 where nothing creeps.
+# The numbers of a law: the parameter array; ⅔Cᵢ and γᵢ of the back stresses that saturate, shape (temperatures, terms,
+# 2), no terms: the one of ζ, or none; and the array of creep (`creep.flow`), whose time is 0 where nothing creeps.
 Parts = namedtuple("Parts", "plastic terms viscous")
-# The law of one's own in that place: a compiled loop over the points, and its parameters, see `own`.
-OwnPoints = namedtuple("OwnPoints", "loop values")
 # ζᵢ and γᵢ of a back stress with their slopes in b*, as it saturates with Ḃᵢ = ζᵢ D_pl − γᵢ Bᵢ ṗ.
 Saturation = namedtuple("Saturation", "zeta gamma d_zeta d_gamma")
+
+
+def simple(plastic: np.ndarray) -> Parts:
+    """The numbers of a law that the parameter array alone describes."""
+    return Parts(plastic, np.zeros((1, 0, 2)), np.zeros(CREEP_ENTRIES))
 
 
 def further_columns(components: int, terms: int) -> int:

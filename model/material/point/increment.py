@@ -36,7 +36,6 @@ from coilset.model.material.point.stage import (
     CREEP,
     CREPT,
     ELASTIC,
-    ROOM,
     SCALARS,
     WORK,
     Active,
@@ -46,7 +45,7 @@ from coilset.model.material.point.stage import (
     inner,
     solve,
 )
-from coilset.model.runtime.kernels import INLINE, KERNEL, njit
+from coilset.model.runtime.kernels import INLINE, PASTED, njit
 
 # What an increment is made of. law: Parts; h: time of creep; reference: ṗ₀ Δt, 0 without overstress; temperature at its
 # start, and its change; heating, work, expansion, deviates: as in `Stage`; fading: see `_fading`; follows: whether the
@@ -64,8 +63,8 @@ ROUNDING = 1e-9  # overstress, over the static surface, that is none
 FADED, LONGER = 0.2, 3.0  # share of overstress, see `_fading`; how much longer the next piece ends
 
 
-@njit(**KERNEL)
-def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
+@njit(**PASTED)
+def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, room: np.ndarray) -> int:
     """One increment of strain and time.
 
     Args:
@@ -77,17 +76,12 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
             included where the material creeps.
         new: the state at the end; written.
         C: dσ/dε, shape (3, 3) or (6, 6), N/mm²; written.
+        room: work space, shape (1,) of ROOM.
 
     Returns:
         Number of local iterations, 0 for an elastic increment, -1 if there was no convergence, -2 if the point heated
         itself out of the material's table (then `new` is `old`).
     """
-    room = np.empty(1, ROOM)  # is freed after its last use, so that another function takes the record out of it
-    return _advance(law, old, de, new, C, room)
-
-
-@njit(**KERNEL)
-def _advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, room: np.ndarray) -> int:
     w, n, p, q = room[0], de.shape[0], law.plastic, law.viscous
     w.components, w.terms = n, max(law.terms.shape[1], 1)
     own = old.shape[0] - (2 * n + 1) - n * (w.terms - 1)  # columns of temperature and creep
@@ -111,7 +105,8 @@ def _advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np
     deviates = functions(p, work, start)[4] > 0.0
     of = Increment(law, h, reference, start, end - start, heating, work, expansion, fading, follows, deviates)
     count = _through(of, w)
-    new[:] = old
+    for i in range(len(new)):
+        new[i] = old[i]
     if count < 0:
         return FAILED
     temperature = end + heating * (w.rows[SCALARS, WORK] - work)
@@ -204,7 +199,7 @@ def _copy(w: Room, rows: np.ndarray, slopes: np.ndarray, to_rows: np.ndarray, to
                 to_slopes[i, j, k] = slopes[i, j, k]
 
 
-@njit(**KERNEL)
+@njit(**PASTED)
 def _spin(p: np.ndarray, old: np.ndarray, de: np.ndarray, E: float, G: float, temperature: float, w: Room) -> None:
     """Replace ē and the Bᵢ by those from which Hooke's law leads to the elastic response, with the spin (5.2.33)."""
     s, B = (old[0], old[1], old[2]), (old[3], old[4], old[5])
@@ -222,7 +217,7 @@ def _spin(p: np.ndarray, old: np.ndarray, de: np.ndarray, E: float, G: float, te
                 slopes[ELASTIC, j, k], slopes[i, j, k] = turned.d_stress[k][j] / c[j], turned.d_back[k][j]
 
 
-@njit(**INLINE)
+@njit(**PASTED)
 def _through(of: Increment, w: Room) -> int:
     """Replace the rows and slopes at the start of an increment by those at its end; as `advance`."""
     beta, count = _crossing(of, w), 0
@@ -316,7 +311,7 @@ def _fading(law: Parts, temperature: float, reference: float, w: Room) -> float:
     return min(FADED / (1.0 - FADED) ** m / (GAMMA * rate), 1.0) if rate > 0.0 else 1.0
 
 
-@njit(**INLINE)
+@njit(**PASTED)
 def _pieces(of: Increment, whole: Piece, w: Room) -> int:
     """A part of the increment: pieces that become longer as overstress fades, divided until all stages have an end."""
     _copy(w, w.rows, w.slopes, w.rows_of_part, w.slopes_of_part)

@@ -5,9 +5,8 @@ import numpy as np
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.material.law.functions import CHANGE
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.choice import advance_points
-from coilset.model.material.point.groups import ROD, SOLID
 from coilset.model.material.point.local import TOO_HOT
+from coilset.model.material.point.loops import follow
 
 
 def initial_state(law: Law, points: int, components: int = 3, temperature: float | None = None) -> np.ndarray:
@@ -70,16 +69,9 @@ def update(
         increments = increments - law.thermal_strain(start, end) * (
             np.arange(components) < (1 if components == 3 else 3)
         )
-    new, count = np.empty_like(state), np.empty(points, dtype=np.int64)
-    # in the order in which the sections of rods and solids have them, whose kernels these are
-    if components == 3:
-        rows = np.empty((9, points))
-        advance_points(point_law, ROD, state, increments.T.copy(), new, rows, True, count)
-    else:
-        rows = np.empty((points, 36)).T
-        advance_points(point_law, SOLID, state, increments.T, new, rows, True, count)
+    new, tangent, count = follow(point_law, state, increments)
     refuse(law, count)
-    return new, rows.T.reshape(points, components, components), count
+    return new, tangent, count
 
 
 def refuse(law: Law, count: np.ndarray) -> None:

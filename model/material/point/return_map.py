@@ -43,7 +43,7 @@ from coilset.model.material.point.local_rows import (
     solve_rows,
     turn_of,
 )
-from coilset.model.runtime.kernels import INLINE, njit
+from coilset.model.runtime.kernels import INLINE, PASTED, njit
 
 # By which β follows n₀ and e: 1/n₀:e, 0 if it does not.
 SLOPE, ALONG_B, ALONG_L = range(OTHERS, OTHERS + 3)
@@ -51,6 +51,7 @@ P = LEFT + 2 * LARGEST  # plastic strain, before the dyads' last left vector
 ROWS = ALONG_L + 1
 
 
+@njit(**PASTED)
 def flow_points(
     p: np.ndarray,
     components: Components,
@@ -61,7 +62,7 @@ def flow_points(
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """One increment of the law at many points; compiled where `choice` takes it.
+    """One increment of the law at many points, as `law.loop.flow_points`.
 
     Args:
         p: parameter array of the law.
