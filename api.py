@@ -2,7 +2,7 @@
 
 These names, their arguments and units are stable; modules under `coilset.model` may change with every version.
 Units are N, mm, MPa and K. Wrong input raises `InputError` in one line; a run that finds no equilibrium raises
-`SolveError`.
+`SolveError`, whose `result` holds the steps before.
 
 >>> from coilset.api import Case, solve
 >>> case = Case(
@@ -373,7 +373,7 @@ def solve(
 
     Raises:
         InputError: the spring cannot be built, or cannot do what its load program requires.
-        SolveError: no equilibrium was found.
+        SolveError: no equilibrium was found; its `result` is the Result up to there, None if no step was.
 
     >>> case = Case.read("examples/ck15_presetting.yaml")
     >>> result = solve(case)
@@ -385,14 +385,22 @@ def solve(
     if law is not None and not isinstance(law, OwnLaw):
         raise InputError(f"must be a Law, as Law(update) makes one of a function, not {type(law).__name__}", "law")
     first = Analysis(checked, comm, threads=threads or usual(comm.size), law=law, contacts=contacts, steps=steps)
-    analysis = within_accuracy(first, lambda one, _: one.run(report))
+    try:
+        return _result(within_accuracy(first, lambda one, _: one.run(report)))
+    except SolveError as error:
+        error.result = _result(first) if first.result.steps else None
+        raise
+
+
+def _result(analysis: Analysis) -> Result:
+    """The Result of an analysis; collective."""
 
     def write(folder: Path) -> None:
         summary = summarise(analysis.setup, analysis.result)
         write_run(folder, analysis.setup, analysis.result, summary, origin(analysis.case))
 
-    result = on_first_rank(comm, lambda: _temporary(write))
-    copied = comm.bcast(result)
+    result = on_first_rank(analysis.comm, lambda: _temporary(write))
+    copied = analysis.comm.bcast(result)
     return result or copied  # the folder is removed with rank 0's
 
 

@@ -2,6 +2,7 @@
 
 import contextlib
 from collections.abc import Iterator
+from typing import Any
 
 
 def printable(text: str) -> str:
@@ -52,6 +53,11 @@ def naming(file: object) -> Iterator[None]:
 
 
 class SolveError(CoilsetError):
-    """A solve that did not converge or cannot continue; the results up to that point are kept."""
+    """A solve that did not converge or cannot continue; the results up to that point are kept.
+
+    Attributes:
+        result: the Result up to there, of `coilset.api.solve`; None elsewhere, or without a step.
+    """
 
     exit_code = 3
+    result: Any = None

@@ -5,7 +5,7 @@ import doctest
 import pytest
 
 import coilset.api
-from coilset.api import Case, InputError, Result, material
+from coilset.api import Case, InputError, Result, SolveError, material
 
 
 def once(function):
@@ -51,6 +51,24 @@ def test_what_is_no_case_and_no_law_is_refused():
         coilset.api.slice_({})
     with pytest.raises(InputError, match=r"^law: must be a Law, as Law\(update\) makes one of a function, not type$"):
         coilset.api.solve(case, law=dict)
+
+
+def test_a_run_without_an_equilibrium_has_its_results_up_to_there():
+    case = Case.read("examples/ck15_presetting.yaml").change(
+        {
+            "ends": "clamped",
+            "loading": [{"to": {"travel": 3}, "steps": 2}, {"to": {"force": 1e3}, "steps": 1}],
+            "contact.penetration_limit": 1e-4,
+            "accuracy": "none",
+            "mesh": {"elements_per_turn": 8, "section": {"rule": "abramowitz9"}},
+            "solver": {"control": {"steps": {"smallest": 0.05}}},
+        }
+    )
+    with pytest.raises(SolveError, match="no equilibrium") as found:
+        coilset.api.solve(case)
+    result = found.value.result
+    assert not result.summary["complete"]
+    assert result.travel[:2] == pytest.approx([1.5, 3.0])
 
 
 def test_a_folder_without_results_is_refused(tmp_path):
