@@ -23,6 +23,9 @@ if TYPE_CHECKING:  # imported at run time only when a mesh is read
 LEAST_POINTS = 5
 WIDEST_STEP = 1 / 3  # maximum turn between neighbouring points
 WIRE_DIAMETER = "wire_diameter"
+# A point is an outlier if it lies farther than these wire diameters off the curve through its neighbours, and so many
+# times farther than the points usually do.
+OFF, TIMES = 0.2, 20.0
 
 
 class MeasuredSpec(Strict):
@@ -73,6 +76,7 @@ class MeasuredSpec(Strict):
         if axis is not None:
             points = axis.moved(points)
             turn, hand, phase = _turns(points, numbers, path)
+        _refuse_outlier(turn, np.column_stack([np.hypot(*points[:, :2].T), points[:, 2]]), wire, numbers, path)
         # radius and height have the same noise as a coordinate
         fit = functions.smoothed if self.noise > 0 else lambda t, y, noise: functions.tabulated(t, y, "spline")
         radius = fit(turn, np.hypot(points[:, 0], points[:, 1]), self.noise)
@@ -198,3 +202,30 @@ def _turns(points: np.ndarray, numbers: np.ndarray, path: str | Path) -> tuple[n
             path,
         )
     return np.concatenate([[0.0], np.cumsum(np.abs(step))]) / (2 * np.pi), hand, float(angle[0])
+
+
+def _refuse_outlier(turn: np.ndarray, places: np.ndarray, wire: np.ndarray, numbers: np.ndarray, path: Path) -> None:
+    """Refuse a point that is far off the cubic through its four neighbours in radius or height, as a misprint is.
+
+    Args:
+        turn: of the points, shape (n,).
+        places: radius and height, mm, shape (n, 2).
+        wire: wire diameters, mm.
+        numbers: of the points in the file.
+        path: the file.
+    """
+    others = np.array([-2, -1, 1, 2])
+    inner = np.arange(2, len(turn) - 2)
+    at = turn[inner[:, None] + others] - turn[inner, None]  # of the four, from the point on
+    weights = np.stack([np.prod(np.delete(at, k, 1) / (np.delete(at, k, 1) - at[:, [k]]), axis=1) for k in range(4)], 1)
+    fitted = np.einsum("ik,ikj->ij", weights, places[inner[:, None] + others])
+    off = np.abs(places[inner] - fitted).max(axis=1)
+    worst = int(np.argmax(off))
+    i = inner[worst]
+    if off[worst] > max(OFF * wire[i], TIMES * float(np.median(off))):
+        raise InputError(
+            f"lies {off[worst]:.2g} mm off the curve through its neighbours, the others {np.median(off):.1g} mm; "
+            "correct it or leave it out",
+            f"point {numbers[i]}",
+            path,
+        )

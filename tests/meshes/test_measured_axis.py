@@ -5,6 +5,7 @@ import pytest
 
 from coilset.meshes.springs.measured import MeasuredSpec
 from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
@@ -140,3 +141,17 @@ def test_force_eccentricity_and_active_turns_do_not_depend_on_the_files_axis(nam
     eccentricity = [run.seats[-1].bottom.eccentricity_mm for run in (drawn, moved)]
     assert eccentricity[1] == pytest.approx(eccentricity[0], abs=0.1 if oval else 1e-4)
     assert summary["measured_axis_offset_mm"] < 3.001
+
+
+@pytest.mark.parametrize(("column", "number"), [(2, 60), (1, 20)])
+def test_a_misprinted_point_is_named(tmp_path, example, column, number):
+    """A shipped scan with 1.5 mm more in a height, or 2 mm in a radius, of one of its 145 points."""
+    rows = [line.split(",") for line in (example.parent / "springs" / "measured.csv").read_text().split()]
+    place = np.array(rows[number][:2], float)
+    if column == 2:
+        rows[number][2] = str(float(rows[number][2]) + 1.5)
+    else:
+        rows[number][:2] = map(str, place * (1.0 + 2.0 / np.hypot(*place)))
+    (tmp_path / "scan.csv").write_text("\n".join(map(",".join, rows)))
+    with pytest.raises(InputError, match=rf"point {number}: lies .* mm off the curve through its neighbours"):
+        MeasuredSpec(file=str(tmp_path / "scan.csv")).build()
