@@ -30,7 +30,7 @@ ALTERNATIVES = {
     "(word)": ", or a number",
     "(none)": ", or a group of constants",
     "(block)": ", or a target as in {travel: 5}",
-    "(part)": ", or none",
+    "(part)": ", or none; 0.2 % is 0.002",
 }  # to a word, by its tag
 _short = reprlib.Repr()
 _short.maxlevel, _short.maxdict, _short.maxlist, _short.maxtuple = 3, 4, 6, 6
@@ -62,18 +62,18 @@ def explain(error: ValidationError) -> tuple[str, str]:
         parts.append(shortened(context["entry"]))
     given = "" if first["type"] in (*OWN, "value_error") else f"{shown(first['input'])}: "
     problem = TEXTS.get(first["type"]) or _in_words(first["msg"])
+    if first["type"] in ("float_type", "int_type") and isinstance(first["input"], str):
+        problem += _number_in_words(first["input"])
     problem += ALTERNATIVES.get(first["loc"][-1], "") if first["loc"] else ""
     if first["type"] == "string_type" and isinstance(first["input"], int | float):
         problem += "; a number in quotation marks is one"
-    if first["type"] in ("float_type", "int_type") and isinstance(first["input"], str):
-        problem += _number_in_words(first["input"])
     more = f" (the first of {len(found)} errors)" if len(found) > 1 else ""
     return ".".join(parts), f"{given}{problem}{more}"
 
 
 def _number_in_words(text: str) -> str:
     """The message for a number given as a word, such as `5,0` or `5 mm`."""
-    if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", text):
+    if re.fullmatch(r"\s*[-+]?\d+,\d+\s*%?\s*", text):
         return f" with a decimal point, as in {text.strip().replace(',', '.')}"
     if re.fullmatch(r"\s*[-+]?\d*\.?\d+\s*[^\d\s.,:][^\d]{0,9}", text):
         return " without its unit; units are N, mm, MPa and K everywhere"

@@ -47,6 +47,8 @@ def problem(data):
             {"spring": SPRING | {"pitch": "12,5"}},
             "spring.pitch: '12,5': must be a number with a decimal point, as in 12.5$",
         ),
+        ({"accuracy": "0,2"}, "accuracy: '0,2': must be a number with a decimal point, as in 0.2, or none; 0.2 % is"),
+        ({"accuracy": "0,2 %"}, "accuracy: '0,2 %': must be a number with a decimal point, as in 0.2 %, or none"),
         ({"spring": SPRING | {"pitch": "12,500,1"}}, "spring.pitch: '12,500,1': must be a number$"),
         ({"temperature": "20°C"}, "temperature: '20°C': must be a number without its unit; units are N, mm, MPa and K"),
         ({"temperature": "warm"}, "temperature: 'warm': must be a number$"),
