@@ -186,7 +186,7 @@ def _annotate(axes: Axes, note: dict[str, Any]) -> None:
         axes.annotate("", (note["ax"], note["ay"]), (note["x"], note["y"]), arrowprops=arrow)
         return
     place = axes.get_xaxis_transform() if note.get("yref") == "paper" else axes.transData
-    across = "right" if note.get("yref") == "paper" else "center"  # not beyond the figure
+    across = "right" if note.get("yref") == "paper" else note.get("xanchor", "center")  # not beyond the figure
     va = "top" if note.get("yref") == "paper" else note["yanchor"]
     box = {"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.8}
     axes.text(note["x"], note["y"], f" {note['text']} ", transform=place, ha=across, va=va, fontsize=8, bbox=box)

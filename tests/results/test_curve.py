@@ -18,6 +18,17 @@ def test_the_curve_passes_its_steps_and_never_beyond_their_neighbours():
         assert fine[[0, -1]].tolist() == x[[0, -1]].tolist()
 
 
+def test_a_kink_between_two_steps_is_drawn_where_their_lines_meet():
+    """Open with 3 N/mm up to 8 mm, then 50 N/mm; in both directions, and without a line behind it a straight one."""
+    travel = np.array([0.0, 2.0, 5.0, 9.0, 10.0])
+    force = np.maximum(3.0 * travel, 24.0 + 50.0 * (travel - 8.0))
+    for x, y in ((travel, force), (travel[::-1], force[::-1])):
+        fine, values = smooth(x, y, [3 if x[0] == 0.0 else 2])
+        assert values == pytest.approx(np.maximum(3.0 * fine, 24.0 + 50.0 * (fine - 8.0)))
+        assert 8.0 in fine.round(9)
+    assert smooth(travel[:4], force[:4], [3])[0].max() == 9.0
+
+
 @pytest.mark.parametrize("travel", [[0.0, 1.0, 2.0], [0.0, 2.0, 1.0, 3.0]])
 def test_few_steps_and_a_travel_that_turns_back_keep_their_lines(travel):
     assert smooth(travel, travel)[0].tolist() == travel

@@ -1,11 +1,13 @@
 """Rates from a characteristic, against curves whose slope is known, and active turns of a spring that is released."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from mpi4py import MPI
 
 from coilset.model.case import read_case
-from coilset.model.results.records.rates import finished, first_compression, makers_rate, rate_at
+from coilset.model.results.records.rates import Curve, finished, first_compression, makers_rate, rate_at, tension
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
@@ -19,8 +21,32 @@ def step(number, travel, force, free_length=50.0):
 
 def test_the_makers_rate_is_the_secant_from_30_to_70():
     force = 3.0 * TRAVEL + 0.5 * TRAVEL**2
-    assert makers_rate(TRAVEL, force, 10.0) == pytest.approx((3 * 4 + 0.5 * (49 - 9)) / 4)
-    assert makers_rate(TRAVEL, force, 15.0) is None
+    curve = Curve(TRAVEL, force, np.zeros(21))
+    assert makers_rate(curve, 10.0) == pytest.approx((3 * 4 + 0.5 * (49 - 9)) / 4)
+    assert makers_rate(curve, 15.0) is None
+
+
+def test_the_rate_is_that_of_open_coils_where_a_step_closes_them():
+    """Open up to 8 mm with 3 N/mm, then 50 N/mm, in steps of which one leads from 5 to 9 mm."""
+    travel = np.array([0.0, 2.0, 5.0, 9.0, 10.0])
+    curve = Curve(travel, np.maximum(3.0 * travel, 24.0 + 50.0 * (travel - 8.0)), np.array([2, 2, 2, 6, 8]))
+    assert makers_rate(curve, 10.0) == pytest.approx(3.0)
+    assert [curve.at(travel) for travel in (1.0, 8.5, 9.5)] == pytest.approx([3.0, 49.0, 99.0])
+
+
+@pytest.mark.parametrize("first", [(0.5,), ()])
+def test_the_initial_tension_needs_no_step_in_which_coils_touch(first):
+    """25 N of coils that give way by 27 N/mm, 3 N/mm behind: with a step on the way there, and without."""
+
+    def pulled(number, travel):
+        contacts = 4 if 27.0 * travel < 25.0 else 0
+        force = 27.0 * travel if contacts else 25.0 + 3.0 * (travel - 25.0 / 27.0)
+        return Step(number, 0, 1.0, 50.0 + travel, -travel, -force, 1, 1, 0, 0, contacts, 0.0)
+
+    steps = [pulled(number, travel) for number, travel in enumerate((*first, 10.0, 20.0))]
+    found = tension(SimpleNamespace(wound_solid=True), SimpleNamespace(steps=steps, rate=27.0), None)
+    assert found["initial_tension_N"] == pytest.approx(25.0)
+    assert found["open_rate_N_per_mm"] == pytest.approx(3.0)
 
 
 @pytest.mark.parametrize("at", [0.1, 4.2, 9.9])
@@ -35,7 +61,7 @@ def test_branches_of_a_characteristic():
     assert first_compression([*there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
     grown = [step(k, -0.1 * k, 0.0) for k in range(3)]  # by heat
     assert first_compression([*grown, *there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
-    travel, force = finished([*there, *back], 0, 48.0)
+    travel, force, _ = finished([*there, *back], 0, 48.0)
     assert travel.tolist() == [0.0, 2.0, 4.0]
     assert force.tolist() == [0.0, 6.0, 12.0]
     again = [Step(9, 1, 1.0, 48.0 - travel, 2.0 + travel, 2.5 * travel, 1, 1, 0, 0, 0, 0.0) for travel in (1.0, 3.0)]

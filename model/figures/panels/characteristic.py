@@ -15,6 +15,7 @@ from coilset.model.results.records.working import number_name
 HEIGHT = 440  # pixels, the same for both, which stand side by side
 NAMED = len(COLOURS)  # targets
 BETWEEN = 12  # points drawn from a step to the next
+SHORT = 0.25  # of the travel to block: an arrow of the set that its text would hide
 AGAIN = "For the second loading, add a phase to the load program, such as “- to: block”, and solve again."
 
 
@@ -28,7 +29,7 @@ def characteristic(run: Run) -> Panel:
     for phase, travel, force in _curves(run, found):
         colour = phase.number if phase.number < NAMED else GREY
         entry: dict[str, Any] = {"name": phase.label, "legendgroup": phase.label}
-        kinks = opening(run, phase) if wound else []
+        kinks = opening(run, phase) if wound else closing(run, phase)
         traces.append(curve(*smooth(travel, force, kinks), colour, hoverinfo="skip", showlegend=phase.named, **entry))
         steps = curve(travel, force, colour, marker=5, showlegend=False, **entry)
         traces.append(steps | {"mode": "markers", "marker": {"size": 5, "color": steps["line"]["color"]}})
@@ -52,7 +53,7 @@ def characteristic(run: Run) -> Panel:
     if greatest < 0.0:
         layout = {"annotations": []}
     if set_mm and not opened:  # an extension spring sets in its initial tension first
-        layout["annotations"] += _arrow(set_mm)
+        layout["annotations"] += _arrow(set_mm, block)
     return Panel(
         "characteristic",
         finding,
@@ -115,17 +116,37 @@ def _curves(
 
 
 def _opening_travel(run: Run, held: float) -> float:
-    """Travel at which wound coils open, at F0 = `held` on the line from 0 through the first step of closed ones."""
+    """Travel at which wound coils open, at F0 = `held` on the line from 0 through the first step of closed ones.
+
+    Without such a step it is that of the initial rate.
+    """
     travel, force, contacts = (run.data[name].values for name in ("travel_mm", "force_N", "contacts"))
     closed = np.flatnonzero((force < 0.0) & (contacts > 0))
-    return -held * float(travel[closed[0]] / force[closed[0]]) if len(closed) else 0.0
+    if len(closed):
+        return -held * float(travel[closed[0]] / force[closed[0]])
+    rate = run.summary["rate_N_per_mm"]
+    return -held / rate if rate else 0.0
 
 
 def opening(run: Run, phase: Phase) -> list[int]:
     """Points of a phase's curve before which wound coils open or close."""
-    touching = np.append(1, run.data["contacts"].values)[np.append(phase.steps[0], phase.steps + 1)] > 0
-    found: list[int] = (np.flatnonzero(np.diff(touching)) + 1).tolist()
+    found: list[int] = (np.flatnonzero(np.diff(_contacts(run, phase, 1) > 0)) + 1).tolist()
     return found
+
+
+def closing(run: Run, phase: Phase) -> list[int]:
+    """Points of a phase's curve before which the first coils close, or the last ones open."""
+    count = _contacts(run, phase, 0)
+    change = np.diff(count)
+    stays = change == 0
+    closes, opens = (change > 0) & np.append(False, stays[:-1]), (change < 0) & np.append(stays[1:], False)
+    found: list[int] = (np.flatnonzero(closes | opens) + 1).tolist()
+    return found
+
+
+def _contacts(run: Run, phase: Phase, before: int) -> np.ndarray:
+    """How many contacts are closed at the points of a phase's curve; `before`: before the first step."""
+    return np.append(before, run.data["contacts"].values)[np.append(phase.steps[0], phase.steps + 1)]
 
 
 def smooth(travel: npt.ArrayLike, force: npt.ArrayLike, kinks: Sequence[int] = ()) -> tuple[np.ndarray, np.ndarray]:
@@ -133,21 +154,36 @@ def smooth(travel: npt.ArrayLike, force: npt.ArrayLike, kinks: Sequence[int] = (
 
     It has no corner at a step and no value beyond its neighbours, so that it neither rounds off nor overshoots a kink
     where coils close. A phase of fewer than three steps, or one whose travel turns back, keeps its straight lines. At
-    `kinks`, points before which the rate jumps, the curve is cut, and a straight line joins its pieces.
+    `kinks`, points before which the rate jumps, the curve is cut, and its pieces are joined where the lines through the
+    two points before and behind meet, if that is between them, else by a straight line.
     """
+    x, y = np.asarray(travel, float), np.asarray(force, float)
     if kinks:
-        cuts = [np.split(np.asarray(values, float), kinks) for values in (travel, force)]
-        both = [smooth(*piece) for piece in zip(*cuts, strict=True)]
-        return np.concatenate([x for x, _ in both]), np.concatenate([y for _, y in both])
+        xs, ys = np.split(x, kinks), np.split(y, kinks)
+        pieces = [smooth(xs[0], ys[0])]
+        for k, after, force_after in zip(kinks, xs[1:], ys[1:], strict=True):
+            pieces += [_meeting(x[k - 2 : k + 2], y[k - 2 : k + 2]), smooth(after, force_after)]
+        return np.concatenate([x for x, _ in pieces]), np.concatenate([y for _, y in pieces])
     from scipy.interpolate import PchipInterpolator
 
-    x, y = np.asarray(travel, float), np.asarray(force, float)
     way = np.diff(x)
     if len(x) < 4 or not (np.all(way > 0.0) or np.all(way < 0.0)):
         return x, y
     fine = np.interp(np.arange(BETWEEN * (len(x) - 1) + 1) / BETWEEN, np.arange(len(x)), x)
     order = np.argsort(x)
     return fine, PchipInterpolator(x[order], y[order])(fine)
+
+
+def _meeting(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where the lines through the first and the last two of four points meet, if between them: one point, or none."""
+    way = np.diff(x)
+    if len(way) == 3 and np.all(way[[0, 2]] != 0.0):
+        first, last = np.diff(y)[[0, 2]] / way[[0, 2]]
+        if first != last:
+            at = (y[2] - y[1] + first * x[1] - last * x[2]) / (first - last)
+            if min(x[1], x[2]) < at < max(x[1], x[2]):
+                return np.array([at]), np.array([y[1] + first * (at - x[1])])
+    return x[:0], y[:0]
 
 
 def compressed(force: float) -> str:
@@ -167,13 +203,16 @@ def _outcome(summary: Mapping[str, Any]) -> str:
     return f", the spring stays {text[1:]} mm longer" if text.startswith("-") else f", the spring sets {text} mm"
 
 
-def _arrow(set_mm: float) -> list[dict[str, Any]]:
-    """Annotations of the set."""
+def _arrow(set_mm: float, block: float) -> list[dict[str, Any]]:
+    """Annotations of the set; behind the arrow where that is short beside the travel to block."""
     ends = {"x": set_mm, "ax": 0, "y": 0, "ay": 0, "axref": "x", "ayref": "y", "text": "", "showarrow": True}
     text = f"set {plain(set_mm)} mm".replace("-", "−")
+    place: dict[str, Any] = {"x": 0.5 * set_mm}
+    if abs(set_mm) < SHORT * block:
+        place = {"x": max(set_mm, 0.0), "xanchor": "left"}
     return [
         {**ends, "arrowhead": 2, "arrowside": "end+start", "arrowwidth": 1.2},
-        {"x": 0.5 * set_mm, "y": 0, "yanchor": "top", "text": text, "showarrow": False},
+        place | {"y": 0, "yanchor": "top", "text": text, "showarrow": False},
     ]
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import dropwhile
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,14 +13,39 @@ MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures t
 STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less changes nothing
 
 
-def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
-    """Travel, mm, and force, N, from the start to the first release; a free spring may be heated before."""
+class Curve(NamedTuple):
+    """Ascending travels, mm, the forces there, N, and how many contacts are closed."""
+
+    travel: np.ndarray
+    force: np.ndarray
+    contacts: np.ndarray
+
+    def at(self, travel: float) -> float:
+        """Force at a travel, N, between two steps by a straight line.
+
+        Where the first coils close between them, the rate jumps on the way: there the force follows the lines through
+        the two steps before and the two behind.
+        """
+        chord = float(np.interp(travel, self.travel, self.force))
+        i = int(np.searchsorted(self.travel, travel))
+        if not 2 <= i < len(self.travel) - 1 or not self.contacts[i - 2] == self.contacts[i - 1] < self.contacts[i]:
+            return chord
+        return min(chord, max(self._line(i - 1, travel), self._line(i + 1, travel)))
+
+    def _line(self, i: int, travel: float) -> float:
+        """Force on the line through a point and the one before it, N."""
+        rate = (self.force[i] - self.force[i - 1]) / (self.travel[i] - self.travel[i - 1])
+        return float(self.force[i] + rate * (travel - self.travel[i]))
+
+
+def first_compression(steps: Sequence[Step]) -> Curve:
+    """The curve from the start to the first release; a free spring may be heated before."""
     pressed = dropwhile(lambda step: step.travel_mm <= 0.0, steps)
-    return _ascending([(step.travel_mm, step.force_N) for step in pressed])
+    return _ascending([(step.travel_mm, step.force_N, step.contacts) for step in pressed])
 
 
-def finished(steps: Sequence[Step], phase: int, height: float, whole: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Travel, mm, and force, N, of the finished spring, after a release that ended at a seat height, mm.
+def finished(steps: Sequence[Step], phase: int, height: float, whole: float = 0.0) -> Curve:
+    """The curve of the finished spring, after a release that ended at a seat height, mm.
 
     Those of the compression after the released phase, if it covers what `makers_rate` needs of the travel `whole` to
     block; else those of the release, backwards.
@@ -28,36 +53,36 @@ def finished(steps: Sequence[Step], phase: int, height: float, whole: float = 0.
     before = [step for step in steps if step.phase <= phase]
     later = [step for step in steps if step.phase > phase]
     compression, release = (
-        _ascending([(height - step.seat_height_mm, step.force_N) for step in path]) for path in (later, before[-2::-1])
+        _ascending([(height - step.seat_height_mm, step.force_N, step.contacts) for step in path])
+        for path in (later, before[-2::-1])
     )
-    return compression if later and compression[0][-1] >= MAKERS[1] * whole else release
+    return compression if later and compression.travel[-1] >= MAKERS[1] * whole else release
 
 
-def _ascending(points: Sequence[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
-    """Travels and forces from 0 on, as far as the travel grows; points that repeat the one before are left out."""
-    least = STANDS * np.abs(points).max(axis=0, initial=0.0)
-    found = [(0.0, 0.0)]
+def _ascending(points: Sequence[tuple[float, float, int]]) -> Curve:
+    """The curve from 0 on, as far as the travel grows; points that repeat the one before are left out."""
+    least = STANDS * np.abs(np.reshape(points, (-1, 3))).max(axis=0, initial=0.0)[:2]
+    found = [(0.0, 0.0, points[0][2] if points else 0)]
     for point in points:
-        if np.all(np.abs(np.subtract(point, found[-1])) <= least):
+        if np.all(np.abs(np.subtract(point[:2], found[-1][:2])) <= least):
             continue
         if point[0] <= found[-1][0]:
             break
         found.append(point)
-    travel, force = np.array(found).T
-    return travel, force
+    return Curve(*np.array(found).T)
 
 
-def makers_rate(travel: np.ndarray, force: np.ndarray, whole: float) -> float | None:
+def makers_rate(curve: Curve, whole: float) -> float | None:
     """Force over travel between 30 and 70 % of the travel to block, N/mm; None if the curve does not extend that far.
 
     Args:
-        travel, force: ascending travels, mm, and forces, N.
+        curve: of the spring.
         whole: travel to block, mm.
     """
     low, high = (share * whole for share in MAKERS)
-    if whole <= 0.0 or travel[-1] < high:
+    if whole <= 0.0 or curve.travel[-1] < high:
         return None
-    return float(np.diff(np.interp([low, high], travel, force))[0] / (high - low))
+    return (curve.at(high) - curve.at(low)) / (high - low)
 
 
 def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
@@ -72,19 +97,19 @@ def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
 def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
     """Entries of the summary: the rate between 30 and 70 % of the travel to block, before and after the last release,
     and the requested rates."""
-    travel, force = first_compression(result.steps)
+    curve = first_compression(result.steps)
     block, after = setup.spring.block_height, None
     if release is not None:
         height = release.snapshot.height
-        after = makers_rate(*finished(result.steps, release.phase, height, height - block), height - block)
+        after = makers_rate(finished(result.steps, release.phase, height, height - block), height - block)
     return {
-        "rate_30_70_N_per_mm": makers_rate(travel, force, setup.spring.free_length - block),
+        "rate_30_70_N_per_mm": makers_rate(curve, setup.spring.free_length - block),
         "rate_30_70_after_N_per_mm": after,
         "rates": tuple(
             {
                 "travel_mm": at,
-                "force_N": float(np.interp(at, travel, force)) if at <= travel[-1] else None,
-                "rate_N_per_mm": rate_at(travel, force, at),
+                "force_N": curve.at(at) if at <= curve.travel[-1] else None,
+                "rate_N_per_mm": rate_at(curve.travel, curve.force, at),
             }
             for at in setup.rates_at
         ),
@@ -118,8 +143,8 @@ def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, 
     """Entries of the summary of a spring whose coils are wound onto each other: F0 before and after, N, and rate.
 
     The line of an open spring, F = a + R s, by the first two steps without contact, and by the last two of the last
-    release, is followed back to that of the closed one, s = c F by the first step in which coils touch: there
-    F0 = a/(1 − R c). Without such a step c is zero; it is that of hooks and of coils that press on each other.
+    release, is followed back to that of the closed one, s = c F by the first step in which coils touch, or by the
+    initial rate: there F0 = a/(1 − R c). c is that of hooks and of coils that press on each other.
     """
     names = "initial_tension_N", "initial_tension_after_N", "open_rate_N_per_mm"
     if not setup.wound_solid:
@@ -127,7 +152,7 @@ def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, 
     pulled = [step for step in result.steps if step.force_N < 0.0 and not step.contacts]
     before, rate = _line([step for step in pulled if step.phase == pulled[0].phase][:2] if pulled else [])
     touching = next((step for step in result.steps if step.force_N < 0.0 and step.contacts), None)
-    closed = touching.travel_mm / touching.force_N if touching else 0.0
+    closed = touching.travel_mm / touching.force_N if touching else 1.0 / result.rate if result.rate > 0.0 else 0.0
     if before is not None and rate is not None:
         before /= 1.0 - rate * closed
     after = None

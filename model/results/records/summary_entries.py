@@ -130,8 +130,8 @@ class Summary:
     turn_set_deg: float | None = entry("degrees", "rotation that remains after the last release")
     initial_tension_N: float | None = entry(
         "N",
-        "F0 of coils that are wound onto each other: the line of the open spring in the first pull, at its closed "
-        "length; `null`, as the next two, without `spring.initial_tension`",
+        "F0 of coils that are wound onto each other: the line of the open spring in the first pull, back to "
+        "where it meets the line of the closed one; `null`, as the next two, without `spring.initial_tension`",
     )
     initial_tension_after_N: float | None = entry("N", "F0 by the line of the last release; 0 if the coils stay open")
     open_rate_N_per_mm: float | None = entry("N/mm", "rate once the coils are open, in the first pull")
