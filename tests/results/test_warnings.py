@@ -97,6 +97,15 @@ def test_warnings_of_steps(lifted):
         assert next(one for one in found if one.name == name).place.startswith("step 2, ") or name == "buckled"
 
 
+@pytest.mark.parametrize(
+    ("critical", "words"), [(12.0, "the spring buckled at"), (math.inf, "coils gave way sideways at")]
+)
+def test_a_spring_too_short_to_buckle_has_coils_that_give_way(lifted, critical, words):
+    step = Step(1, 0, 1.0, 30.0, 5.0, 100.0, 3, 4, 0, 0, 2, 0.0, negative_pivots=1)
+    found = step_warnings(replace(lifted.setup, buckling_travel=critical), Result(steps=(step,)))
+    assert next(one.message for one in found if one.name == "buckled").startswith(f"{words} a travel of 5 mm and 100 N")
+
+
 def test_creep_beyond_its_tests(lifted):
     """Stress where time begins to pass: of the snapshot before that phase, not of a press before."""
     shots, step = lifted.result.snapshots, Step(1, 1, 1.0, 30.0, 5.0, 100.0, 3, 4, 0, 0, 2, 0.0)

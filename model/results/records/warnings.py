@@ -139,10 +139,12 @@ def _penetration(setup: Setup, result: Result) -> Iterator[Warning]:
 def _buckled(setup: Setup, result: Result) -> Iterator[Warning]:
     found, limit = buckling(result.steps, setup.mean_diameter), setup.buckling_travel
     if found is not None:
-        beside = f"at {limit:.4g} mm" if isfinite(limit) else "never"
+        where = f"at a travel of {found.travel_mm:.4g} mm and {found.force_N:.4g} N"
         message = (
-            f"the spring buckled at a travel of {found.travel_mm:.4g} mm and {found.force_N:.4g} N (EN 13906-1: "
-            f"{beside}); the results beyond are for the buckled shape"
+            f"the spring buckled {where} (EN 13906-1: at {limit:.4g} mm); the results beyond are for the buckled shape"
+            if isfinite(limit)
+            else f"coils gave way sideways {where}, though a spring as short as this never buckles as a whole "
+            "(EN 13906-1); the results beyond are for the shape they took"
         )
         place = f"travel {found.travel_mm:.4g} mm"
         yield Warning("buckled", place, message, found.travel_mm, limit if isfinite(limit) else None, "mm")
