@@ -53,7 +53,7 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
         (WIRE, ("stress", "strength", "endurance"), cylinder or wire),
         ("buckling", ("buckled", "buckling", "snapped"), ""),
         ("material data", ("plastic work",), ""),
-        ("accuracy", ("error", "step error", "unknown error", "penetration", "wall"), unknown),
+        ("accuracy", ("accuracy", "error", "step error", "unknown error", "penetration", "wall"), unknown),
     ]
     if summary.get("limits"):
         groups.insert(0, ("limits", ("limit",), ""))

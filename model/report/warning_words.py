@@ -1,6 +1,7 @@
 """The kinds of warnings in words, for pages that count them."""
 
 KINDS = {
+    "accuracy": "the accuracy required is that of a rough estimate",
     "active turns": "few turns are active",
     "buckled": "the spring buckles",
     "buckling": "the spring is slender and may buckle without a guide",

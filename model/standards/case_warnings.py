@@ -20,6 +20,8 @@ from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE
 from coilset.model.standards.working_warnings import endurance_warnings, gap_warnings, stress_warnings
 
+COARSE = 0.1  # an accuracy that is rather meant in per cent
+
 
 def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
     """Warnings about a case, before it runs."""
@@ -27,6 +29,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
     own = [one for one in spring_warnings(spring, elastic) if not (one.name == "buckling" and pulls(case, spring))]
     return (
         *_renamed(case),
+        *_accuracy(case),
         *_estimated(case),
         *_warm(case, law),
         *_supports(case, spring),
@@ -39,6 +42,12 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
 def _renamed(case: Case) -> Iterator[Warning]:
     for notice in case.notices():
         yield Warning("earlier name", notice.partition(":")[0], notice)
+
+
+def _accuracy(case: Case) -> Iterator[Warning]:
+    if isinstance(case.accuracy, float) and case.accuracy >= COARSE:
+        message = f"errors of {100.0 * case.accuracy:g} % of force and set are allowed; 0.2 % is 0.002, or '0.2 %'"
+        yield Warning("accuracy", "accuracy", message, case.accuracy, COARSE)
 
 
 def _estimated(case: Case) -> Iterator[Warning]:

@@ -113,3 +113,11 @@ def test_supports_that_no_spring_has_are_named(example, ends, support, place):
     found = [one for one in case_warnings(case, spring, case_law(case, spring)) if one.name == "support"]
     assert [one.place for one in found] == ([place, place] if place else [])
     assert all(end in one.message and "give" in one.message for end, one in zip(("bottom", "top"), found, strict=False))
+
+
+@pytest.mark.parametrize(("accuracy", "warned"), [("10 %", True), (0.2, True), ("0.2 %", False), ("none", False)])
+def test_an_accuracy_that_is_rather_meant_in_per_cent(example, accuracy, warned):
+    case = read_case(example, [f"accuracy={accuracy}", "loading=[{to: {travel: 5}, steps: 2}]"])
+    spring = case.spring.build()
+    found = [one for one in case_warnings(case, spring, case_law(case, spring)) if one.name == "accuracy"]
+    assert len(found) == warned
