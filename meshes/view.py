@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonDataModel import vtkPlane, vtkPlaneCollection
+from vtkmodules.vtkFiltersGeneral import vtkClipClosedSurface
 
 from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs.geometry import Spring
@@ -44,19 +46,33 @@ def _outlined(spring: Spring, section: Boundary, turns: np.ndarray) -> pv.PolyDa
 
 
 def _cut(surface: pv.PolyData, spring: Spring) -> pv.PolyData:
-    """What the grinding of the ends leaves of a surface."""
-    for end, normal, level in ((spring.bottom, (0, 0, 1), 0.0), (spring.top, (0, 0, -1), spring.free_length)):
+    """What the grinding of the ends leaves of a closed surface.
+
+    Both planes cut at once: where a flat side of the wire grazes the first, slivers without area are missing in its
+    ground face, and pyvista's `clip_closed_surface` refuses to cut such a surface again.
+    """
+    planes = vtkPlaneCollection()
+    for end, up, level in ((spring.bottom, 1.0, 0.0), (spring.top, -1.0, spring.free_length)):
         if end.tip_thickness < 1:
-            surface = surface.triangulate().clean().clip_closed_surface(normal=normal, origin=(0, 0, level))
-    return surface
+            plane = vtkPlane()
+            plane.SetNormal(0.0, 0.0, up)
+            plane.SetOrigin(0.0, 0.0, level)
+            planes.AddItem(plane)
+    if not planes.GetNumberOfItems():
+        return surface
+    clip = vtkClipClosedSurface()
+    clip.SetInputData(surface.triangulate().clean())
+    clip.SetClippingPlanes(planes)
+    clip.Update()
+    return pv.PolyData(clip.GetOutput())
 
 
 def picture(spring: Spring, path: str | Path) -> None:
     """Draw the spring as a PNG, seen from the side and slightly above; needs a display."""
     plotter = pv.Plotter(off_screen=True, window_size=(900, 900))
     plotter.set_background("white")
-    edges = spring.section is not None  # sharp ones, of flats and corners
-    plotter.add_mesh(tube(spring), color="lightsteelblue", smooth_shading=True, split_sharp_edges=edges, specular=0.3)
+    surface = tube(spring)
+    plotter.add_mesh(surface, color="lightsteelblue", smooth_shading=True, split_sharp_edges=True, specular=0.3)
     middle = 0.5 * spring.free_length
     plotter.camera_position = [(0, -10, middle + 3), (0, 0, middle), (0, 0, 1)]
     plotter.camera.parallel_projection = True

@@ -59,5 +59,11 @@ def load_scene() -> Draw:
     return draw
 
 
+def not_drawn(what: str, error: Exception) -> str:
+    """The warning that a picture is missing, in one line."""
+    reason = str(error).partition("\n")[0] or type(error).__name__
+    return f"{what}: {reason}"
+
+
 PARTS: dict[str, Callable[[], Draw]] = {"figures": load_figures, "scene": load_scene}
 """Names of the parts; each gives a function that draws."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from mpi4py import MPI
 
 from coilset.meshes.springs.spring import Spring
-from coilset.model.base.errors import InputError, naming
+from coilset.model.base.errors import CoilsetError, InputError, naming
 from coilset.model.case import read_case
 from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
 from coilset.model.standards.spring_data import spring_data
@@ -81,14 +81,26 @@ def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:
     from coilset.meshes import drawing, view
     from coilset.model.base.style import STYLE
     from coilset.model.figures import display
+    from coilset.model.figures.pictures import not_drawn
     from coilset.model.figures.png import save
     from coilset.model.results.records.labels import plain
 
-    size = f"{plain(spring.turns)} turns, {plain(spring.free_length)} mm long"
-    with mpl.rc_context(STYLE):
-        save(drawing.drawing(spring, f"{name}: {size}"), out / DRAWN[0])
-    if not display.ensure():
-        console.warn(f"{DRAWN[1]} is not drawn: there is no display and no Xvfb")
-        return
-    with whole(out / DRAWN[1]) as path:
-        view.picture(spring, path)
+    def side_view(path: Path) -> None:
+        size = f"{plain(spring.turns)} turns, {plain(spring.free_length)} mm long"
+        with mpl.rc_context(STYLE):
+            save(drawing.drawing(spring, f"{name}: {size}"), path)
+
+    def in_3d(path: Path) -> None:
+        if not display.ensure():
+            console.warn(f"{DRAWN[1]} is not drawn: there is no display and no Xvfb")
+            return
+        with whole(path) as partial:
+            view.picture(spring, partial)
+
+    for file, draw in zip(DRAWN, (side_view, in_3d), strict=True):
+        try:
+            draw(out / file)
+        except (CoilsetError, OSError):  # of writing it
+            raise
+        except Exception as error:  # of the libraries that draw
+            console.warn(not_drawn(f"{file} is not drawn", error))

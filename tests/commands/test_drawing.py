@@ -1,5 +1,6 @@
 """Pictures are drawn by processes of their own: what becomes of them however they, or those who wait for them, end."""
 
+import io
 import json
 import os
 import signal
@@ -12,6 +13,7 @@ import pytest
 from matplotlib.image import imread
 
 from coilset.model.base.errors import CoilsetError
+from coilset.model.figures import pictures
 from coilset.model.figures.display import ensure
 from coilset.model.runtime.processes import mpi_environment, mpirun
 from coilset.scripts.startup import announce_begin
@@ -57,6 +59,18 @@ def test_warnings_of_all_parts_come_back(stand_in, tmp_path):
     with Drawings(os.environ) as drawings:
         assert drawings.draw(tmp_path) == [f"one {tmp_path.name}", f"two {tmp_path.name}"]
     assert all(process.returncode is not None for process in started)
+
+
+def test_an_error_of_a_library_is_a_warning(monkeypatch, tmp_path):
+    def draw(folder):
+        raise KeyError(f"no triangles in {folder.name}")
+
+    monkeypatch.setitem(pictures.PARTS, "scene", lambda: draw)
+    found = drawing.draw_part("scene", io.BytesIO(os.fsencode(tmp_path)))
+    assert found == {
+        "problem": None,
+        "warnings": [f"not all pictures are drawn: 'no triangles in {tmp_path.name}'"],
+    }
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,12 @@ import meshio
 import numpy as np
 import pytest
 
+from coilset.meshes import view
 from coilset.meshes.drawing import drawing
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import CoilsetError, InputError
+from coilset.model.case import read_case
+from coilset.model.figures import display
 from coilset.scripts.commands.mesh import mesh
 
 SPRINGS = Path(__file__).parents[2] / "examples" / "springs"
@@ -48,6 +51,32 @@ def test_files_and_pictures(tmp_path, capsys):
     with pytest.raises(InputError, match="coils overlap"):  # the spring is judged first, as in the tutorial
         mesh(SPRINGS / "cylinder.yaml", out=out, settings=["spring.pitch=3"])
     mesh(SPRINGS / "closed_and_ground.yaml", out=out, write=[str(file)], force=True)
+
+
+@pytest.mark.parametrize("setting", ["corner=0.5", "corner=0.8", "corner=0.2"])
+def test_flat_sides_are_ground_at_both_ends(setting):
+    """They graze the plane where the ground faces begin. The wire is whole between the planes, the faces are there."""
+    spring = read_case(SPRINGS / "die_spring.yaml", [f"spring.wire.rectangle.{setting}"]).spring.build()
+    surface = view.tube(spring)
+    assert surface.bounds[4:] == pytest.approx((0.0, spring.free_length), abs=1e-6)
+    assert 0.8 * spring.volume < surface.volume < 0.95 * spring.volume
+    sized = surface.compute_cell_sizes(length=False, volume=False)
+    for level in (0.0, spring.free_length):
+        z = surface.points[surface.regular_faces][..., 2]
+        face = sized["Area"][(np.abs(z - level) < 1e-6).all(axis=1)].sum()
+        assert face == pytest.approx(0.75 * np.pi * (15.0**2 - 9.0**2), rel=0.05)  # three quarters of a turn
+
+
+def test_a_picture_that_cannot_be_drawn_is_a_warning(tmp_path, monkeypatch, capsys):
+    def fail(*_):
+        raise ValueError("the surface is open\nin many places")
+
+    monkeypatch.setattr(view, "picture", fail)
+    monkeypatch.setattr(display, "ensure", lambda: True)
+    mesh(SPRINGS / "cylinder.yaml", out=tmp_path)
+    said = capsys.readouterr()
+    assert "warning: spring.png is not drawn: the surface is open\n" in said.out + said.err
+    assert [path.name for path in tmp_path.iterdir()] == ["drawing.png"]
 
 
 def test_gmsh_writes_small_letters_only(tmp_path):
