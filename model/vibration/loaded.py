@@ -1,6 +1,7 @@
 """The spring of a results folder at a state: its last equilibrium, brought to a height, travel or force from there."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -24,9 +25,13 @@ def after_run(case: Case, at: str = "end") -> Analysis:
             `height=`, `travel=` (mm, since the start) or `force=` (N).
 
     Raises:
-        InputError: the state has no meaning, or the spring cannot be built.
+        InputError: the state has no meaning, the seats do not touch the spring there, or it cannot be built.
         SolveError: no equilibrium was found.
     """
+    return _touched(lambda state: _run(case, state), at)
+
+
+def _run(case: Case, at: str) -> Analysis:
     analysis = Analysis(_gone_on(case, at), detailed=False, estimates=False)
     analysis.run()
     return analysis
@@ -40,9 +45,14 @@ def after_results(folder: str | Path, at: str = "end") -> Analysis:
         at: as for `after_run`.
 
     Raises:
-        InputError: there are no such results, the run is not complete, or the state has no meaning.
+        InputError: there are no such results, the run is not complete, the state has no meaning, or the seats do not
+            touch the spring there.
         SolveError: no equilibrium was found there.
     """
+    return _touched(lambda state: _resumed(folder, state), at)
+
+
+def _resumed(folder: str | Path, at: str) -> Analysis:
     run = check(open_run(folder).case, Path("case"))
     case = _gone_on(run, at)
     saved = _saved(Path(folder), case)
@@ -53,6 +63,28 @@ def after_results(folder: str | Path, at: str = "end") -> Analysis:
     if at != "end":
         analysis.run()
     return analysis
+
+
+def _touched(going: Callable[[str], Analysis], at: str) -> Analysis:
+    """The analysis that went on to a state, if the seats touch the spring there; collective.
+
+    Args:
+        going: gives the analysis gone on to a state in words.
+        at: the state.
+
+    Raises:
+        InputError: the spring is free there; only the weak springs that hold its tips would pull it.
+    """
+    analysis = going(at)
+    if not analysis.result.steps[-1].lift_off_mm:
+        return analysis
+    height, free = analysis.control.height, going("force=0")
+    length = free.setup.outer_length(free.layout.gather(free.rod.x))
+    raise InputError(
+        f"'{at}' leads to a height of {height:.6g} mm, above the present free length of {length:.5g} mm, but seats "
+        "cannot pull; give a height up to it",
+        "--at",
+    )
 
 
 def _saved(folder: Path, case: Case) -> Saved:

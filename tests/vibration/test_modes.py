@@ -1,5 +1,7 @@
 """Natural frequencies of rods against closed solutions and the twelve equations of a helix."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from coilset.model.material import library
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards.buckling import critical_travel
 from coilset.model.standards.en13906 import natural_frequency
-from coilset.model.vibration.loaded import _gone_on, phase_to
+from coilset.model.vibration.loaded import _gone_on, after_run, phase_to
 from coilset.model.vibration.mass import TONNE
 from coilset.model.vibration.modes import _glued, natural_modes
 from coilset.verification.chain import ALL, X, chain, elastic, straight
@@ -144,6 +146,24 @@ def test_states_in_words():
     assert phase_to("force=12.5", coil) == {"to": {"force": 12.5}}
     with pytest.raises(InputError, match="is no state; give end, block"):
         phase_to("blocked", coil)
+
+
+def test_seats_that_no_longer_touch_the_spring_are_refused():
+    """Above the length that it has after its set; clamped heads pull it, and hooks."""
+    entries = {"spring": CK15 | {"turns": 2.5, "pitch": 12.0}, "material": "ck15", "accuracy": "none"}
+    mesh = {"elements_per_turn": 8, "section": {"radial": 2, "angular": 8}}
+    loading = [{"to": "block", "steps": 4}, {"to": {"force": 0.0}, "steps": 2}]
+    pressed = check(entries | {"mesh": mesh, "loading": loading})
+    free = after_run(pressed)
+    length = free.setup.outer_length(free.layout.gather(free.rod.x))
+    assert length < 23.0
+    for at in ("height=30", "travel=5", f"height={length + 0.1}"):
+        message = f"'{at}' leads to a height of .* mm, above the present free length of {length:.5g} mm, but seats"
+        with pytest.raises(InputError, match=re.escape("--at: ") + message):
+            after_run(pressed, at)
+    assert after_run(pressed, f"height={length - 0.1}").control.force > 0.0
+    clamped = check(entries | {"mesh": mesh, "loading": loading, "ends": "clamped"})
+    assert after_run(clamped, "height=30").control.force < 0.0
 
 
 def test_the_way_to_a_state_has_equal_steps_where_errors_are_not_estimated():
