@@ -20,7 +20,7 @@ from coilset.model.case import Case
 from coilset.model.case.phases import Phase, Target
 from coilset.model.nest.file import NAMES, Nest
 from coilset.model.nest.plan import Plan, plan
-from coilset.model.results.records.record import Result, Setup, Step
+from coilset.model.results.records.record import Errors, Result, Setup, Step
 from coilset.model.run.analysis import Analysis
 
 NEAR = 1e-6  # mm, between a step's height and the plan's
@@ -64,6 +64,36 @@ class Pressed:
         """Height at which the seats touch the first spring after the run, mm; None if one was not released."""
         lengths = [self._after(member) for member in self.members]
         return None if None in lengths else max(length for length in lengths if length is not None)
+
+    @property
+    def force_error(self) -> float | None:
+        """Estimated size of the error of the maximum force, N: those of both springs together; None if not known."""
+        errors = [self._errors(member).force_N for member in self.members]
+        return None if None in errors else sum(error for error in errors if error is not None)
+
+    @property
+    def set_error(self) -> float | None:
+        """Estimated size of the error of `free_length_after` and of the set, mm; None if not known.
+
+        Either spring may be the longer one within the errors of both.
+        """
+        after, own = self.free_length_after, []
+        for member in self.members:
+            length, error = self._after(member), self._errors(member).set_mm
+            if length is None or error is None:
+                return None
+            own.append((length, error))
+        assert after is not None
+        return max(
+            max(length + error for length, error in own) - after, after - max(length - error for length, error in own)
+        )
+
+    @staticmethod
+    def _errors(member: Member) -> Errors:
+        """Of a spring that the seats never reach zero."""
+        if member.result is None:
+            return Errors(0.0, 0.0, 0.0)
+        return Errors(None, None, None) if member.result.errors is None else member.result.errors.total
 
     @staticmethod
     def _after(member: Member) -> float | None:

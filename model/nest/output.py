@@ -11,7 +11,7 @@ from coilset.model.figures.png import write_png
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.nest import Pressed
 from coilset.model.results.files.folder import RESULTS, clear, make, prepare, write_summary, write_table
-from coilset.model.results.records.labels import plain
+from coilset.model.results.records.labels import plain, within
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
@@ -28,8 +28,10 @@ def summary(pressed: Pressed) -> dict[str, Any]:
         "free_length_before_mm": plan.free_length,
         "free_length_after_mm": after,
         "set_mm": None if after is None else plan.free_length - after,
+        "estimated_set_error_mm": pressed.set_error,
         "block_height_mm": plan.block,
         "force_max_N": float(pressed.force.max()),
+        "estimated_force_error_N": pressed.force_error,
         "clearance_min_mm": float(pressed.clearance[tight]),
         "clearance_min_height_mm": float(plan.heights[tight]),
         **{
@@ -72,8 +74,10 @@ def write(folder: Path, pressed: Pressed, force: bool = False, pictures: bool = 
 
 def headline(found: Mapping[str, Any]) -> str:
     """Maximum force and set of a nest, of its summary."""
-    lost = "" if found["set_mm"] is None else f", set {found['set_mm']:z.2f} mm".replace("-", "−")
-    return f"Maximum force {plain(found['force_max_N'], 5)} N{lost}"
+    force, of_set = found.get("estimated_force_error_N"), found.get("estimated_set_error_mm")
+    size = f"{plain(found['force_max_N'], 5)} N" if force is None else within(found["force_max_N"], force, "N", 2)
+    lost = "" if found["set_mm"] is None else f", set {within(found['set_mm'], of_set, 'mm', 2)}"
+    return f"Maximum force {size}{lost}".replace("-", "−")
 
 
 def characteristic(columns: Mapping[str, np.ndarray], found: Mapping[str, Any]) -> Panel:

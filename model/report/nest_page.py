@@ -19,7 +19,7 @@ from coilset.model.report.answer import Number
 from coilset.model.report.page import made_with, write_report
 from coilset.model.report.render import NAME, write_page
 from coilset.model.results.files.opened import Run, open_run
-from coilset.model.results.records.labels import plain
+from coilset.model.results.records.labels import within
 
 FILE = STEPS  # by which the folder of a nest is known
 RINGS = 320  # of a spring, at each moment
@@ -50,6 +50,7 @@ def write_nest_report(folder: str | Path) -> Path:
         write_report(run)
     top = int(np.argmax(np.abs(columns["force_N"])))
     shares = {name: columns[f"{name}_force_N"][top] / (columns["force_N"][top] or 1.0) for name in NAMES}
+    of_set = summary.get("estimated_set_error_mm")
     warnings = [one["message"] for one in summary["warnings"]]
     warnings += [f"{name} spring: {one['message']}" for name in runs for one in springs[name]["warnings"]]
     return write_page(
@@ -60,22 +61,22 @@ def write_nest_report(folder: str | Path) -> Path:
             ("The springs", [view(runs)]),
         ],
         {},
-        title=f"{folder.resolve().name}: set {_length(summary['set_mm'], 3)}",
+        title=f"{folder.resolve().name}: set {_with_error(summary['set_mm'], of_set, 'mm', 3)}",
         subtitle=f"two springs between the same seats, pressed to {columns['seat_height_mm'].min():.4g} mm, released",
         answer=[
             Number(
                 "set",
-                _length(summary["set_mm"], 3),
+                _with_error(summary["set_mm"], of_set, "mm", 3),
                 "of the height at which the seats touch the first spring",
             ),
             Number(
                 "free length",
-                _length(summary["free_length_after_mm"], 3),
+                _with_error(summary["free_length_after_mm"], of_set, "mm", 3),
                 f"after; {summary['free_length_before_mm']:.3f} mm before",
             ),
             Number(
                 "maximum force",
-                f"{plain(summary['force_max_N'], 5)} N",
+                _with_error(summary["force_max_N"], summary.get("estimated_force_error_N"), "N", 2),
                 ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items()),
             ),
             Number(
@@ -99,22 +100,34 @@ def _length(value: float | None, digits: int) -> str:
     return with_unit(value, "mm", digits, "not released")
 
 
+def _with_error(value: float | None, error: float | None, unit: str, digits: int) -> str:
+    return "not released" if value is None else within(value, error, unit, digits).replace("-", "−")
+
+
 def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: float) -> dict[str, Any]:
     """A row of the table of both springs, and the link to its page; of a spring that was not reached only its name."""
     if summary is None:
         return {"name": name, "link": "", "cells": ["not reached by the seats"] + [""] * 6}
-    inside = summary["residual_shear_inside_MPa"]
+    inside, of_set, of_force, of_inside = (
+        summary.get(key)
+        for key in (
+            "residual_shear_inside_MPa",
+            "estimated_set_error_mm",
+            "estimated_force_error_N",
+            "estimated_residual_shear_inside_error_MPa",
+        )
+    )
     return {
         "name": name,
         "link": f"{name}/{NAME}",
         "cells": [
             summary["material"],
-            f"{plain(force, 5)} N",
+            _with_error(force, of_force, "N", 2),
             f"{100.0 * share:.1f} %",
             f"{summary['free_length_before_mm']:.3f} mm",
-            _length(summary["set_mm"], 3),
+            _with_error(summary["set_mm"], of_set, "mm", 3),
             with_unit(summary["shear_inside_max_MPa"], "MPa"),
-            "–" if inside is None else with_unit(inside, "MPa", 1),
+            "–" if inside is None else _with_error(inside, of_inside, "MPa", 1),
         ],
     }
 

@@ -11,6 +11,7 @@ from coilset.model.nest import output
 from coilset.model.nest.file import read_nest
 from coilset.model.nest.nest import Pressed, press
 from coilset.model.results.files.folder import refuse_results
+from coilset.model.results.records.labels import within
 from coilset.model.results.records.record import Step
 from coilset.model.runtime.threads import usual
 from coilset.scripts.terminal.console import Console
@@ -39,19 +40,23 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
 
 
 def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder: Path) -> None:
-    table = Table("", "nest", *(member.name for member in pressed.members), box=None, padding=(0, 2))
-    rows = {
-        "free length before": "free_length_before_mm",
-        "free length after": "free_length_after_mm",
-        "set": "set_mm",
-        "block": "block_height_mm",
-    }
+    apart = (0, 2, 0, 0)  # its rows fit in 80 columns
+    table = Table("", "nest", *(member.name for member in pressed.members), box=None, padding=apart)
+    rows = (
+        ("free length before", "free_length_before_mm", "", "mm", 4),
+        ("free length after", "free_length_after_mm", "estimated_set_error_mm", "mm", 4),
+        ("set", "set_mm", "estimated_set_error_mm", "mm", 4),
+        ("block", "block_height_mm", "", "mm", 4),
+        ("maximum force", "force_max_N", "estimated_force_error_N", "N", 2),
+    )
     columns = [found, *(found[member.name] or {} for member in pressed.members)]
-    for name, key in rows.items():
-        table.add_row(name, *(quantity(one.get(key), "mm") for one in columns))
-    table.add_row("maximum force", *(quantity(one.get("force_max_N"), "N", 2) for one in columns))
-    for name, key in (("maximum", "shear_inside_max_MPa"), ("residual", "residual_shear_inside_MPa")):
-        table.add_row(f"shear inside, {name}", "", *(quantity(one.get(key), "MPa", 1) for one in columns[1:]))
+    for name, key, error, unit, digits in rows:
+        table.add_row(name, *(within(one.get(key), one.get(error), unit, digits) for one in columns))
+    key, error = "residual_shear_inside_MPa", "estimated_residual_shear_inside_error_MPa"
+    greatest = (quantity(one.get("shear_inside_max_MPa"), "MPa", 1) for one in columns[1:])
+    left = (within(one.get(key), one.get(error), "MPa", 1) for one in columns[1:])
+    table.add_row("shear inside, maximum", "", *greatest)
+    table.add_row("shear inside, residual", "", *left)
     table.add_row("minimum clearance", quantity(found["clearance_min_mm"], "mm"), "", "")
     console.print(table)
     for warning in pressed.warnings:

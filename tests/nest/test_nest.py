@@ -4,6 +4,7 @@ import csv
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,9 +13,11 @@ import yaml
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case.case import check
 from coilset.model.nest.file import Press, read_nest
-from coilset.model.nest.nest import press
+from coilset.model.nest.nest import Member, Pressed, press
 from coilset.model.nest.output import COLUMNS
 from coilset.model.nest.plan import plan
+from coilset.model.results.records.labels import within
+from coilset.model.results.records.record import Errors
 from coilset.model.run.analysis import Analysis
 from coilset.scripts.commands.nest import nest as nest_command
 
@@ -79,6 +82,39 @@ def test_springs_that_set_are_let_go_each_to_its_own_length(tmp_path):
         lengths.append(member.setup.outer_length(member.result.snapshots[-1].x))
         assert lengths[-1] < member.setup.spring.free_length - 1.0
     assert found.free_length_after == max(lengths)
+
+
+def member(length, *errors):
+    """A spring that was let go at a length, with errors of force and set."""
+    shot = SimpleNamespace(x=None)
+    of_run = SimpleNamespace(total=Errors(*errors, None)) if errors else None
+    result = SimpleNamespace(complete=True, snapshots=[shot], errors=of_run)
+    setup = SimpleNamespace(outer_length=lambda _: length)
+    return Member("", None, setup, result)
+
+
+def test_errors_of_a_nest_are_those_of_both_springs():
+    """The shorter one may be the longer one within its error; forces add up."""
+
+    def of(*members):
+        return Pressed(SimpleNamespace(), members, np.zeros((2, 1)), np.zeros(1), ())
+
+    nest = of(member(39.0, 60.0, 2.0), member(30.0, 0.5, 0.25))
+    assert (nest.force_error, nest.set_error) == (60.5, 2.0)
+    assert of(member(39.0, 60.0, 2.0), member(38.5, 0.5, 4.0)).set_error == pytest.approx(3.5)
+    unknown = of(member(39.0), member(30.0, 0.5, 0.25))
+    assert (unknown.force_error, unknown.set_error) == (None, None)
+
+
+def test_the_table_has_the_errors(tmp_path, capsys):
+    """As coilset solve prints them, here of two coarse meshes."""
+    pressed_far = write(tmp_path, material="ck15", loading=[{"to": {"height": 20.0}, "steps": 4}])
+    nest_command(pressed_far, tmp_path / "out", False, False)
+    found = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    printed = capsys.readouterr().out
+    assert within(found["set_mm"], found["estimated_set_error_mm"], "mm", 4) in printed
+    assert within(found["force_max_N"], found["estimated_force_error_N"], "N", 2) in printed
+    assert re.search(r"set +[\d.]+ ± [\d.]+ mm", printed)
 
 
 def test_heights_of_the_plan():

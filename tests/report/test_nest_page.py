@@ -11,6 +11,7 @@ import yaml
 
 from coilset.model.figures.panels.panel import with_unit
 from coilset.model.nest.output import headline
+from coilset.model.results.records.labels import within
 from coilset.scripts.commands.nest import nest
 from coilset.scripts.commands.report import report
 
@@ -21,6 +22,8 @@ COMMON = {
     "mesh": {"elements_per_turn": 8, "section": {"radial": 2, "angular": 8}},
     "loading": [{"to": "block"}],
 }
+
+INSIDE = "residual_shear_inside_MPa", "estimated_residual_shear_inside_error_MPa"
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +45,11 @@ def page(folder):
 
 def test_the_answer_has_both_springs(folder, page):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    for text in (f"{summary['set_mm']:.3f} mm", f"{summary['clearance_min_mm']:.3f} mm"):
+    of_set = within(summary["set_mm"], summary["estimated_set_error_mm"], "mm", 3)
+    of_force = within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2)
+    assert "±" in of_set
+    assert "±" in of_force
+    for text in (of_set, of_force, f"{summary['clearance_min_mm']:.3f} mm"):
         assert f"<strong>{text}</strong>" in page
     shares = [float(share) for share in re.findall(r"<td>([\d.]+) %</td>", page)]
     assert shares[0] == pytest.approx(100.0 * summary["outer"]["force_max_N"] / summary["force_max_N"], abs=0.051)
@@ -51,7 +58,8 @@ def test_the_answer_has_both_springs(folder, page):
     for name in ("outer", "inner"):
         assert f'href="{name}/report.html"' in page
         assert (folder / name / "report.html").is_file()
-        assert with_unit(summary[name]["residual_shear_inside_MPa"], "MPa", 1) in page
+        inside, error = (summary[name][key] for key in INSIDE)
+        assert within(inside, error, "MPa", 1).replace("-", "−") in page
 
 
 def test_the_figures_are_of_both_springs(page):
@@ -67,4 +75,6 @@ def test_the_figures_are_of_both_springs(page):
 def test_the_title_of_its_picture_is_in_plain_numbers():
     assert headline({"force_max_N": 83812.3, "set_mm": -1e-7}) == "Maximum force 83,812 N, set 0.00 mm"
     assert headline({"force_max_N": 412.68, "set_mm": 30.7037}) == "Maximum force 412.68 N, set 30.70 mm"
+    unsure = {"force_max_N": 844.39, "set_mm": 30.7385, "estimated_force_error_N": 56.0, "estimated_set_error_mm": 2.1}
+    assert headline(unsure) == "Maximum force 840 ± 60 N, set 31 ± 3 mm"
     assert with_unit(-1e-7, "mm", 3) == "0.000 mm"
