@@ -32,6 +32,7 @@ def animate(run: Run) -> Path:
     Raises:
         CoilsetError: if there is no display and none can be started, or the file cannot be written.
     """
+    run.require_steps()
     if not ensure():
         raise CoilsetError(f"{NAME} is not drawn: there is no display and no Xvfb")
     shown = frames(run, MOST)

@@ -27,6 +27,7 @@ def write_series(run: Run) -> list[Path]:
     Raises:
         CoilsetError: if one cannot be written.
     """
+    run.require_steps()
     folder = run.folder / "fields"
     make(folder)
     parts = {"line": _lines(run), "wire": _wires(run), "sections": _sections(run)}

@@ -80,6 +80,7 @@ def found_run(folder: Path, design: Mapping[str, Any]) -> Run | None:
     """The results of the case that was found, in the design's folder; None without them, or if they are of another."""
     try:
         run = open_run(folder / FOUND)
+        run.require_steps()
     except InputError:
         return None
     cases = ({name: case[name] for name in case if name not in FINER} for case in (run.case, design["origin"]["case"]))

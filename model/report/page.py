@@ -52,8 +52,9 @@ def write_report(run: Run) -> Path:
         The file.
 
     Raises:
-        InputError: if plotly is missing. CoilsetError: if the file cannot be written.
+        InputError: if plotly is missing, or the run has no steps. CoilsetError: if the file cannot be written.
     """
+    run.require_steps()
     chapters = [(title, [panel for draw in figures if (panel := draw(run)) is not None]) for title, figures in CHAPTERS]
     if run.is_turned:
         chapters[0] = "Torque and rotation", chapters[0][1]

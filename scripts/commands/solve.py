@@ -146,7 +146,7 @@ def _solve(first: Analysis, runs: _Runs, drawings: Drawings | None) -> None:
     output.conclude(summary, folder)
     for warning in summary["warnings"]:
         log.warning("warning: %s: %s", warning["name"], warning["message"])
-    if drawings:
+    if drawings and analysis.result.steps:  # without steps there is nothing to draw
         try:
             for problem in on_first_rank(comm, lambda: drawings.draw(folder)) or ():
                 output.warn(problem)

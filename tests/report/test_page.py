@@ -11,21 +11,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.design.conditions import SIZE_OF_ZERO
+from coilset.model.figures.animation import animate
 from coilset.model.figures.panels.characteristic import NAMED, characteristic
 from coilset.model.figures.panels.material_curves import material_curve
 from coilset.model.figures.panels.phases import phases
 from coilset.model.figures.panels.seats import force_centre
+from coilset.model.figures.series import write_series
 from coilset.model.figures.wire_surface import closed, frames, inside, shear_around, tubes
 from coilset.model.material import library
 from coilset.model.report import design_page
 from coilset.model.report.page import CHAPTERS, write_report
 from coilset.model.report.render import GLOSSARY
 from coilset.model.results.files.opened import open_run
+from coilset.model.run.load_history import LoadHistory
 from coilset.scripts.commands.report import report
 from coilset.scripts.commands.sheet import Options, sheet
+from coilset.scripts.commands.solve import solve
 
 MOST = 15e6  # bytes of a page
 
@@ -231,6 +236,37 @@ def test_a_folder_without_a_run_is_refused(tmp_path):
     (tmp_path / "summary.json").write_text("{")
     (tmp_path / "points.nc").touch()
     with pytest.raises(InputError, match=r"summary\.json: is not readable"):
+        open_run(tmp_path)
+
+
+def test_a_run_that_ends_before_its_first_step_has_no_pictures_and_no_page(folder, tmp_path, monkeypatch):
+    def fail(_):
+        raise SolveError("the wound coils find no equilibrium")
+
+    class Never:
+        def draw(self, _):
+            raise AssertionError
+
+    monkeypatch.setattr(LoadHistory, "_settle_coils", fail)
+    with pytest.raises(SolveError, match=r"^the wound coils find no equilibrium$"):
+        solve(folder.parent / "spring.yaml", tmp_path, False, [], drawings=Never(), comm=MPI.COMM_SELF)
+    for command in (report, lambda where: animate(open_run(where)), lambda where: write_series(open_run(where))):
+        with pytest.raises(InputError, match="the run has no steps: it ended before its first one"):
+            command(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("files", "message"),
+    [
+        (("summary.json", "history.csv"), "holds a slice, not a run: a slice has neither page nor modes"),
+        (("summary.json", "nest.csv"), "holds a nest, not a run"),
+        (("sweep.nc",), "holds a sweep, not a run"),
+    ],
+)
+def test_results_of_other_commands_are_named(tmp_path, files, message):
+    for name in files:
+        (tmp_path / name).touch()
+    with pytest.raises(InputError, match=f": {message}$"):
         open_run(tmp_path)
 
 

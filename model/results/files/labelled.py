@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from coilset.model.base.errors import reading
-from coilset.model.results.files.opened import open_run, table
+from coilset.model.results.files.opened import is_slice, open_run, table
 from coilset.model.results.records.units import unit_of
 
 
@@ -38,15 +38,6 @@ def labelled(folder: str | Path) -> xr.Dataset:
     add_summary(data, run.summary)
     data.attrs["case"] = json.dumps(run.case)
     return data
-
-
-def is_slice(folder: Path) -> bool:
-    """Whether a folder holds the results of `coilset slice`, which has no section points of a rod."""
-    return (
-        (folder / "summary.json").is_file()
-        and not (folder / "points.nc").exists()
-        and not (folder / "seats.csv").exists()
-    )
 
 
 def _slice(folder: Path) -> xr.Dataset:

@@ -40,6 +40,20 @@ class Run:
         return is_turned(self.summary)
 
     @property
+    def has_steps(self) -> bool:
+        """Whether it came to its first step."""
+        return "phase" in self.data
+
+    def require_steps(self) -> None:
+        """Check whether there is anything to show.
+
+        Raises:
+            InputError: it ended before its first step.
+        """
+        if not self.has_steps:
+            raise InputError("the run has no steps: it ended before its first one", "", self.folder)
+
+    @property
     def snapshots(self) -> list[str]:
         """Names of the snapshots: the start, and the end of each phase."""
         return [str(name) for name in self.data["snapshot"].values]
@@ -61,7 +75,8 @@ def open_run(folder: str | Path) -> Run:
         if not (folder / name).is_file():
             within = min(folder.glob("*/points.nc"), default=None)  # of a nest's springs, or of runs in one folder
             hint = f"; is {within.parent} meant?" if within else ""
-            raise InputError(f"holds no results of a run: there is no {name}{hint}", "", folder)
+            problem = _other_results(folder) or f"holds no results of a run: there is no {name}"
+            raise InputError(f"{problem}{hint}", "", folder)
     with reading(folder / "summary.json"):
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     with reading(folder / "points.nc"), xr.open_dataset(folder / "points.nc", engine="h5netcdf") as file:
@@ -72,6 +87,24 @@ def open_run(folder: str | Path) -> Run:
     if "origin" not in summary:
         raise InputError("is of a version without the case in it; solve it again", "", folder / "summary.json")
     return Run(folder, summary, data)
+
+
+def is_slice(folder: Path) -> bool:
+    """Whether a folder holds the results of `coilset slice`, which has no section points of a rod."""
+    return all((folder / name).is_file() for name in ("summary.json", "history.csv")) and not any(
+        (folder / name).exists() for name in ("points.nc", "seats.csv")
+    )
+
+
+OTHERS = {"sweep.nc": "a sweep", "design.json": "a design", "nest.csv": "a nest"}
+"""Results of other commands, by a file that only they write."""
+
+
+def _other_results(folder: Path) -> str:
+    """That a folder holds results of another command; empty if it has none."""
+    if is_slice(folder):
+        return "holds a slice, not a run: a slice has neither page nor modes"
+    return next((f"holds {words}, not a run" for name, words in OTHERS.items() if (folder / name).is_file()), "")
 
 
 EARLIER = {"history": "point_state"}
