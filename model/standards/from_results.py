@@ -50,17 +50,29 @@ class Found:
 
         Else that when the spring last passed it, or stood at it but for rounding; None if it never did.
         """
+        finished = self.finished_force_at(length)
+        return self._passed(length, -1) if finished is None else finished
+
+    def finished_force_at(self, length: float) -> float | None:
+        """Force of the finished spring at one of the run's working lengths; None at any other length."""
         for state in self.summary.get("working") or ():
             if state.get("length_wanted") == length and not state["reason"]:
                 return float(state["force_N"])
-        return _last(self.heights, self.forces, length, ROUNDING * self.heights[0])
+        return None
+
+    def first_force_at(self, length: float) -> float | None:
+        """Force when the spring first came to a length, before it had set there; None if it never did."""
+        return self._passed(length, 0)
+
+    def _passed(self, length: float, which: int) -> float | None:
+        return _passed(self.heights, self.forces, length, ROUNDING * self.heights[0], which)
 
     def torque_at(self, turn: float) -> float | None:
         """Torque when the heads last passed a rotation, N mm; positive ones in the sense of the largest, degrees."""
         if self.turns is None or self.torques is None:
             return None
         sense = float(np.sign(self.turns[np.argmax(np.abs(self.turns))]))
-        return _last(sense * self.turns, sense * self.torques, turn, ROUNDING * float(np.ptp(self.turns)))
+        return _passed(sense * self.turns, sense * self.torques, turn, ROUNDING * float(np.ptp(self.turns)), -1)
 
     def work_to(self, length: float) -> float | None:
         """Work of the first compression to a length, ∫ F ds, N mm; None if the first compression did not reach it."""
@@ -73,13 +85,13 @@ class Found:
         return float(0.5 * np.sum((values[1:] + values[:-1]) * -np.diff(grid)))
 
 
-def _last(at: np.ndarray, values: np.ndarray, wanted: float, near: float) -> float | None:
-    """Value when `at` last passed, or stood at, what is wanted; None if it never did."""
+def _passed(at: np.ndarray, values: np.ndarray, wanted: float, near: float, which: int) -> float | None:
+    """Value when `at` passed, or stood at, what is wanted, first (`which` is 0) or last (-1); None if it never did."""
     high, low = np.maximum(at[1:], at[:-1]), np.minimum(at[1:], at[:-1])
     passed = np.flatnonzero((low <= wanted + near) & (wanted - near <= high))
     if len(passed) == 0:
         return None
-    i = passed[-1]
+    i = passed[which]
     way = at[i + 1] - at[i]
     fraction = np.clip((wanted - at[i]) / way, 0.0, 1.0) if way else 1.0  # of a hold, its end
     return float(values[i] + fraction * (values[i + 1] - values[i]))

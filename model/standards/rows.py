@@ -126,8 +126,10 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
     formula = "F0 + R (L − L0)" if sheet.tension else "R (L − L0)"
     for length in sheet.lengths:
         force = -sheet.force(length)
-        pull = sheet.found.force_at(length) if sheet.found else None
-        found = None if pull is None else abs(pull)
+        finished = sheet.found.finished_force_at(length) if sheet.found else None
+        # the formula is of the spring as wound, which is that of its first pull
+        pull = sheet.found.first_force_at(length) if sheet.found and finished is None else finished
+        found, why = None if pull is None else abs(pull), "first pull" if finished is None else "of the finished spring"
         τ = en13906.stress(force, s.d, s.D)
         yield Row(f"force at {length:.5g} mm", force, "N", formula, DERIVED, found, "first pull")
         yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED)
@@ -155,7 +157,7 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
     most = max(sheet.turns_to, key=abs)
     for turn in sheet.turns_to:
         torque, largest = rate * abs(turn), turn == most
-        σ, flow = en13906.bending_stress(torque, s.d), "less where the wire yields, more on an arbor"
+        σ, flow = en13906.bending_stress(torque, s.d), "when last passed: less where the wire yielded, more on an arbor"
         found = sheet.found.torque_at(turn * (1.0 if most > 0.0 else -1.0)) if sheet.found else None
         yield Row(f"torque at {turn:.4g}°", torque, "N mm", "R α", DERIVED, None if found is None else abs(found), flow)
         formula = "32 M/(π d³)"

@@ -133,6 +133,25 @@ def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
     assert endured.why.endswith("the line is of preset springs, so it may count twice")
 
 
+def test_forces_beside_the_formulas_of_a_pull_are_those_of_the_first_or_of_the_finished_spring(tmp_path):
+    """Pulled to 120 mm, on to 140 mm, and released: at 120 mm 250 N on the first pull, 150 N on the way back."""
+    run = from_results.read(run_folder(tmp_path / "run"))
+    run = replace(
+        run,
+        heights=np.array([105.8, 120.0, 140.0, 120.0, 110.0]),
+        forces=-np.array([0.0, 250.0, 400.0, 150.0, 0.0]),
+    )
+    made = Sheet(PRINTED, DM.elastic(5.0), 1260.0, DM, (120.0, 130.0), found=run, pulled=True)
+    shown = rows(made)
+    assert (shown["force at 120 mm"].found, shown["force at 120 mm"].why) == (250.0, "first pull")
+    assert shown["force at 130 mm"].found == pytest.approx(325.0)
+    working = {"length_wanted": 120.0, "reason": "", "force_N": -148.0}
+    finished = replace(run, summary=run.summary | {"working": [working]})
+    shown = rows(replace(made, found=finished))
+    assert (shown["force at 120 mm"].found, shown["force at 120 mm"].why) == (148.0, "of the finished spring")
+    assert (shown["force at 130 mm"].found, shown["force at 130 mm"].why) == (pytest.approx(325.0), "first pull")
+
+
 def test_what_a_run_found_at_block_and_when_it_buckled(tmp_path):
     run = from_results.read(run_folder(tmp_path / "run"))
     run = replace(
