@@ -131,7 +131,7 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
         pull = sheet.found.first_force_at(length) if sheet.found and finished is None else finished
         found, why = None if pull is None else abs(pull), "first pull" if finished is None else "of the finished spring"
         τ = en13906.stress(force, s.d, s.D)
-        yield Row(f"force at {length:.5g} mm", force, "N", formula, DERIVED, found, "first pull")
+        yield Row(f"force at {length:.5g} mm", force, "N", formula, DERIVED, found, why)
         yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED)
         yield Row("  corrected stress τk", k * τ, "MPa", "k τ", TWO)
 
@@ -225,10 +225,10 @@ def _why_block(sheet: Sheet) -> str:
 def _stresses(sheet: Sheet) -> Iterator[Row]:
     s, wire = sheet.spring, sheet.wire
     k, τ = s.correction, sheet.stress(s.solid)
-    force, true = (sheet.at_run(name) if sheet.was_at_block else None for name in ("force_max_N", "shear_max_MPa"))
-    nominal = None if force is None else en13906.stress(force, s.of_stress, s.D)
+    true = sheet.at_run("shear_max_MPa") if sheet.was_at_block else None
     formula = "D Fc/(2 W)" if s.wire else "8 D Fc/(π d³)"
-    yield Row("stress τc", τ, "MPa", formula, DERIVED, nominal, "nominal, of the force found")
+    # none of the run beside it: of its force at block coils that lie on each other carry a part past the wire
+    yield Row("stress τc", τ, "MPa", formula, DERIVED)
     formula = "of the elastic section in the coil, computed" if s.wire else "(w + 0.5)/(w − 0.75)"
     yield Row("stress correction k", k, "", formula, DERIVED if s.wire else TWO)
     why = "maximum true shear stress on the surface of the middle turns"

@@ -37,15 +37,15 @@ def gap_warnings(made: "Sheet") -> list[Warning]:
 def stress_warnings(made: "Sheet", lengths: Sequence[float], wire: Wire) -> list[Warning]:
     """Lengths, mm, at which the nominal stress exceeds that allowed for the wire at block.
 
-    It is that of the run's force where there is a run, and corrected for the wire's curvature where the allowed one is
-    meant so.
+    It is that of the run's force where there is a run, but at block of the formula's, as coils that lie on each other
+    carry a part past the wire; and corrected for the wire's curvature where the allowed one is meant so.
     """
     spring = made.spring
     allowed, of = wire.block_stress(spring.d), wire.entry.block_stress.of
     factor = spring.correction if of == "corrected stress" else 1.0
     found = []
     for length in lengths:
-        computed = made.found.force_at(length) if made.found else None
+        computed = made.found.force_at(length) if made.found and length > spring.solid else None
         force = made.force(length) if computed is None else computed
         stress = factor * en13906.stress(force, spring.of_stress, spring.D)
         if stress > allowed:

@@ -19,6 +19,7 @@ from coilset.model.standards.rows import sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.law import case_law
+from coilset.model.standards.working_warnings import stress_warnings
 from coilset.scripts.commands.sheet import Options, list_wires, sheet
 
 # HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm
@@ -150,6 +151,23 @@ def test_forces_beside_the_formulas_of_a_pull_are_those_of_the_first_or_of_the_f
     shown = rows(replace(made, found=finished))
     assert (shown["force at 120 mm"].found, shown["force at 120 mm"].why) == (148.0, "of the finished spring")
     assert (shown["force at 130 mm"].found, shown["force at 130 mm"].why) == (pytest.approx(325.0), "first pull")
+
+
+def test_stress_at_block_is_that_of_the_formula_also_beside_a_run(tmp_path):
+    """Coils that lie on each other carry 8000 N past the wire; R s is 782 N."""
+    run = from_results.read(run_folder(tmp_path / "run"))
+    run = replace(
+        run,
+        heights=np.append(run.heights, 57.5),
+        forces=np.append(run.forces, 8000.0),
+        summary=run.summary | {"force_max_N": 8000.0},
+    )
+    alone = Sheet(PRINTED, DM.elastic(5.0), 1260.0, DM)
+    beside = replace(alone, found=run)
+    assert rows(beside)["force at block Fc"].found == 8000.0
+    assert rows(beside)["stress τc"].found is None
+    alone_says, beside_says = (stress_warnings(made, [57.5], DM) for made in (alone, beside))
+    assert alone_says == beside_says
 
 
 def test_what_a_run_found_at_block_and_when_it_buckled(tmp_path):
