@@ -1,10 +1,11 @@
 """`coilset sheet`: the formulas of the standards for a case's spring, beside the results of a run."""
 
+import itertools
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 from mpi4py import MPI
 
@@ -32,6 +33,7 @@ from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import SHEETS, results_folder
 
 FIGURE = "goodman.png"
+MOST_DIFFERENCES = 4  # between a run and the case that a message lists
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,8 @@ def sheet(case_file: str | Path | None, options: Options) -> None:
     """Print the sheet of a spring, write it to files, or draw its Goodman diagram; see `coilset sheet --help`.
 
     Raises:
-        InputError: wrong input, a spring that is not cylindrical, or a file that already exists.
+        InputError: wrong input, a spring that is not cylindrical, results of another spring, or a file that already
+            exists.
     """
     if MPI.COMM_WORLD.rank:
         return  # too little work to be worth distributing
@@ -70,6 +73,8 @@ def sheet(case_file: str | Path | None, options: Options) -> None:
     folders = [one for one in options.out if Path(one) not in files]
     folder = results_folder(folders[-1] if folders else None, Path(case_file).stem)
     run = from_results.read(options.results) if options.results else None
+    if run and options.results:
+        _refuse_another_spring(run, case, options.results)
     with naming(case_file):
         spring = case.spring.build()
         grade = GRADES[options.grade]
@@ -100,6 +105,10 @@ def _print(console: Console, case: Case, spring: Spring, made: Sheet, results: s
     """The rows, and warnings; returns these."""
     run, parts = made.found, sections(made)
     width = max(len(row.label) for _, rows in parts for row in rows)
+    before = []
+    if run and (other := _other_program(run, case)):  # before the rows, which it makes hard to compare
+        before = [f"the run {results} is of another load program: {_listed(other)}"]
+        console.warn(before[0])
     beside = f"{'run':>9}  " if run else ""
     console.print(f"  {'':{width}} {'formula':>9} {'':5} {beside}[dim]how it is computed; check[/]", soft_wrap=True)
     for title, rows in parts:
@@ -108,12 +117,10 @@ def _print(console: Console, case: Case, spring: Spring, made: Sheet, results: s
             console.print(line, soft_wrap=True)
     if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
-    if run and (other := _otherwise(run, case)):
-        console.warn(f"{results} is of another spring: {', '.join(other)}")
     warnings = [warning.message for warning in _warnings(spring, made)]
     for message in warnings:
         console.warn(message)
-    return warnings
+    return [*before, *warnings]
 
 
 def _pressed(spring: Spring, height: float, files: Sequence[Path]) -> Spring:
@@ -126,11 +133,43 @@ def _pressed(spring: Spring, height: float, files: Sequence[Path]) -> Spring:
         raise InputError(error.problem, "--height") from None
 
 
-def _otherwise(run: from_results.Found, case: Case) -> list[str]:
-    """Entries of the spring that a run had otherwise than the case."""
-    then = run.summary.get("origin", {}).get("case", {}).get("spring", {})
-    now = case.spring.model_dump(mode="json")
-    return [f"spring.{name}" for name in then if then[name] != now.get(name)]
+def _other_program(run: from_results.Found, case: Case) -> list[str]:
+    """Entries of the load program that a run had otherwise than the case; into how many steps it is divided is none."""
+    then, now = run.summary.get("origin", {}).get("case", {}).get("loading"), case.model_dump(mode="json")["loading"]
+    old, new = ([{k: phase[k] for k in phase if k != "steps"} for phase in one] for one in (then or now, now))
+    return list(_differences(old, new, "loading"))
+
+
+def _refuse_another_spring(run: from_results.Found, case: Case, results: str | Path) -> None:
+    """Raise InputError if the run was of another spring: its numbers beside these formulas would mean nothing."""
+    then, now = run.summary.get("origin", {}).get("case", {}).get("spring"), case.spring.model_dump(mode="json")
+    if other := list(_differences(then or now, now, "spring")):
+        raise InputError(f"the run is of another spring: {_listed(other)}; give its own case", "--results", results)
+
+
+def _differences(then: Any, now: Any, place: str) -> Iterator[str]:
+    """Entries of which a run had other values, with both; entries that its version did not have are no difference."""
+    if isinstance(then, list) and isinstance(now, list):
+        for number, (old, new) in enumerate(itertools.zip_longest(then, now)):
+            yield from _differences(old, new, f"{place}.{number}")
+    elif isinstance(then, dict) and isinstance(now, dict):
+        for name in then:
+            yield from _differences(then.get(name), now.get(name), f"{place}.{name}")
+    elif then != now:
+        yield f"{place} was {_value(then)}, is {_value(now)} in the case"
+
+
+def _value(value: Any) -> str:
+    """Of an entry; one with entries of its own is named by those that are given."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name}: {_value(one)}" for name, one in value.items() if one is not None) + "}"
+    return "not given" if value is None else f"{value:.10g}" if isinstance(value, float) else str(value)
+
+
+def _listed(differences: Sequence[str]) -> str:
+    """The first few of them, in one line."""
+    more = len(differences) - MOST_DIFFERENCES
+    return "; ".join(differences[:MOST_DIFFERENCES]) + (f"; and {more} more" if more > 0 else "")
 
 
 def list_wires(name: str | None = None) -> None:

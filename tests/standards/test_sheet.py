@@ -236,24 +236,51 @@ def test_a_set_is_held_against_presetting_where_the_run_was_at_block(case, tmp_p
     assert ("presetting takes 1 mm" in " ".join(printed.split())) == said
 
 
+def run_of(folder, case, **entries):
+    """A results folder of a run of a case, with some entries otherwise."""
+    folder = run_folder(folder)
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary["origin"] = {"case": read_case(case).model_dump(mode="json") | entries}
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    return folder
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({}, None),
-        ({"turns": 9.0}, "spring.turns"),
-        ({"turns": 9.0, "hand": "left"}, "spring.turns, spring.hand"),
+        ({"turns": 9.0}, "spring.turns was 9, is 7.5 in the case; give"),
+        ({"turns": 9.0, "hand": "left"}, "spring.turns was 9, is 7.5 in the case; spring.hand was left, is right in"),
+        ({"pitch": 9.0, "free_length": None}, "spring.free_length was not given, is 60 in the case"),
     ],
 )
-def test_results_of_another_spring_are_reported(case, tmp_path, capsys, changes, said):
-    folder = run_folder(tmp_path / "run")
-    entries = read_case(case).spring.model_dump(mode="json")
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    summary["origin"] = {"case": {"spring": entries | changes}}
-    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    sheet(case, Options(folder, pictures=False))
-    printed = " ".join(capsys.readouterr().out.split())
-    assert ("is of another spring" in printed) == bool(said)
-    assert said is None or f"is of another spring: {said}" in printed
+def test_results_of_another_spring_are_refused(case, tmp_path, capsys, changes, said):
+    folder = run_of(tmp_path / "run", case, spring=read_case(case).spring.model_dump(mode="json") | changes)
+    with pytest.raises(InputError) as error:
+        sheet(case, Options(folder, pictures=False))
+    assert str(error.value).startswith(f"{folder}: --results: the run is of another spring: spring.")
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
+    assert not capsys.readouterr().out
+
+
+def test_a_run_of_the_case_itself_is_taken(example, tmp_path):
+    """Whose arms have a list of bends without entries."""
+    torsion = example.parent / "springs" / "torsion.yaml"
+    sheet(torsion, Options(run_of(tmp_path / "run", torsion), pictures=False))
+
+
+def test_another_load_program_is_named_before_the_rows(case, tmp_path, capsys):
+    def printed(name, program):
+        sheet(case, Options(run_of(tmp_path / name, case, loading=program), pictures=False))
+        return " ".join(capsys.readouterr().out.split())
+
+    same = read_case(case).model_dump(mode="json")["loading"]
+    assert "another load program" not in printed("same", [phase | {"steps": 7} for phase in same])
+    other = [same[0], {**same[1], "to": same[1]["to"] | {"height": 50.0}}, *same[2:]]
+    before, _, _ = printed("other", other).partition("formula run")
+    assert "is of another load program: loading.1.to.height was 50, is 52 in the case" in before
+    shorter, _, _ = printed("shorter", same[:3]).partition("formula run")
+    assert "loading.3 was not given, is {to: {force: 0}} in the case" in shorter
 
 
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
