@@ -13,11 +13,11 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.stats import t as student
 
+from coilset.model.material.identification.result import WIDE
 from coilset.model.spring_fit.model import LOGARITHMIC, Model
 
 CONFIDENCE = 0.95
 LINEAR = 0.1  # by which the rise of the sum of squares may differ from that of linear residuals
-WIDE = 1.0  # of the value: an interval at least as wide leaves a constant undetermined
 TRIES = 6  # of a profile's end
 THRESHOLD = 1.7  # times the rise for a share: beyond its threshold it is one of many shapes, χ² of 3 over that of 1
 REACH = 3.0  # in the logarithm of a constant: beyond it nothing is sought

@@ -209,9 +209,10 @@ def creep(
     tests = relaxation.read(data, points)
     result = fit_creep(library.load(material), tests, form, hardening, time_exponent, error)
     console = Console()
-    table = Table("constant", "value", "from", "to (95 %)", "unit", box=None, padding=(0, 2))
+    table = Table("constant", "value", "from", "to (95 %)", "unit", "", box=None, padding=(0, 1))
     for key, (low, high) in result.interval.items():
-        table.add_row(key, f"{result.constants[key]:.4g}", f"{low:.4g}", f"{high:.4g}", UNITS[key])
+        mark = "not determined" if key in result.undetermined else ""
+        table.add_row(key, f"{result.constants[key]:.4g}", f"{low:.4g}", f"{high:.4g}", UNITS[key], mark)
     if time_exponent is not None:
         table.add_row("time_exponent", f"{time_exponent:g}", "given", "", "")
     console.print(table)

@@ -162,6 +162,8 @@ def test_the_command(tmp_path):
         (lambda text: text.replace("shear_stress", "tau"), "give one of the columns stress and shear_stress"),
         (lambda text: "\n".join(text.splitlines()[:6]), "has 4 readings; 8 are needed at least"),
         (lambda text: text.replace("\n1,", "\n-1,", 1), "line 3, column hours: -1 must be between 0 and 1e+07"),
+        (lambda text: text.replace(",0\n", ",-3.7\n", 1), "line 3, column loss: -3.7 must be 0 or more, and below 100"),
+        (lambda text: text.replace(",0\n", ",100\n", 1), "line 3, column loss: 100 must be 0 or more, and below 100"),
     ],
 )
 def test_wrong_files(change, message, tmp_path):
@@ -235,6 +237,22 @@ def test_the_command_takes_load_losses_of_a_spring(tmp_path):
     assert known.hours == (48.0, 48.0)
     done = CliRunner().invoke(app, [*arguments[:3], *arguments[4:], "--overwrite"])
     assert "its case file must follow" in str(done.exception)
+
+
+def test_constants_that_the_tests_do_not_determine_are_marked(tmp_path):
+    """A single reading far off drives p against its bound and leaves all intervals wide."""
+    law = library.load("creeping")
+    tests = readings("torsion", (450.0, 600.0), (353.0, 373.0), (1.0, 10.0, 100.0))
+    clean = exact(law, tests)
+    almost = replace(clean, loss=clean.loss * (1.0 + 1e-3 * np.arange(12)))
+    assert creep_fit.fit_creep(law, (almost,)).undetermined == ()
+    lost = np.array([0.7, 1.1, 1.9, 1.2, 2.1, 3.4, 1.2, 2.0, 3.4, 2.2, 0.0, 6.1])
+    write(tmp_path / "tests.csv", replace(clean, loss=lost))
+    arguments = ["creep", "creeping", str(tmp_path / "tests.csv"), "--name", "mine", "--out", str(tmp_path)]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 0, done.output
+    marked = [line.split()[0] for line in done.output.splitlines() if "not determined" in line]
+    assert marked == ["strain", "exponent", "time_exponent", "activation_energy"]
 
 
 def test_tests_that_cannot_tell():

@@ -20,6 +20,7 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.material.creep.forms import FORMS
 from coilset.model.material.identification.relaxation_tests import Readings
 from coilset.model.material.identification.relaxing import loss
+from coilset.model.material.identification.result import WIDE
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 
@@ -31,6 +32,7 @@ BOUNDS = {
     "activation_energy": (0.0, 1e6),
     "log_stress": (0.0, 10.0),
 }
+AT_BOUND = 1e-4  # of the way between its bounds: a variable that the search has driven against one
 STEPS = {"log_strain": 1e-5, "exponent": 1e-4, "time_exponent": 1e-5, "activation_energy": 10.0, "log_stress": 1e-5}
 LOGARITHMIC = "strain", "stress"
 STARTS = ((5.0, 0.2, 8e4), (8.0, 0.5, 1.5e5))  # N, p, Q
@@ -67,6 +69,18 @@ class CreepFit:
         problem, x, squares = self._fitted
         slopes = replace(problem, tests=(tests,), moduli=(modulus(self.law, tests),)).slopes(x)
         return np.sqrt(np.einsum("ij,jk,ik->i", slopes, squares, slopes))
+
+    @property
+    def undetermined(self) -> tuple[str, ...]:
+        """Constants whose interval is wider than their value, or that the bounds of the search have stopped."""
+        problem, x, _ = self._fitted
+        low, high = np.array([BOUNDS[name] for name in problem.names]).T
+        stopped = np.minimum(x - low, high - x) < AT_BOUND * (high - low)
+        return tuple(
+            name
+            for (name, (least, most)), at_bound in zip(self.interval.items(), stopped, strict=True)
+            if at_bound or not most - least <= WIDE * abs(self.constants[name])
+        )
 
     @property
     def range(self) -> dict[str, list[float]]:

@@ -71,14 +71,16 @@ def read_relaxation(path: str | Path, points: bool = False, per_force: float | N
     for name, values, low, high in (
         ("hours", hours, 0.0, 1e7),
         ("temperature", temperature, 0.0, 2000.0),
-        ("loss", loss, -100.0, 100.0),
+        ("loss", loss, 0.0, 100.0),
         (given[0], stress, 0.0, 1e4),
     ):
-        wrong = (values <= low) | (values >= high)
+        may_be_least = name == "loss"  # of a load that has not fallen yet
+        wrong = (values < low) | ((values == low) & (not may_be_least)) | (values >= high)
         if wrong.any():
             k = int(np.argmax(wrong))
+            least = f"{low:g} or more, and below" if may_be_least else f"between {low:g} and"
             raise InputError(
-                f"{values[k]:g} must be between {low:g} and {high:g}",
+                f"{values[k]:g} must be {least} {high:g}",
                 f"line {table.rows[k][0]}, column {name}",
                 table.path,
             )

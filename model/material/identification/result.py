@@ -14,6 +14,8 @@ from coilset.model.material.identification.fitted_law import LARGE, FittedLaw, V
 from coilset.model.material.law import functions as fn
 
 CONFIDENCE = 0.95
+WIDE = 1.0  # of the value: an interval that is wider leaves a constant undetermined
+POOR = 0.03  # of a test's greatest stress: a law with a larger rms residual does not follow it; scatter is 1 % or less
 Minimum = tuple[dict[str, float], OptimizeResult]  # variables, and the result of least squares
 
 
