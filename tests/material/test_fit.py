@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError
 from coilset.model.material import library
-from coilset.model.material.identification import experiments, fit
+from coilset.model.material.identification import experiments, figures, fit
 from coilset.model.material.point import points
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.law import material_fit
@@ -108,6 +108,16 @@ def test_tension_alone_gives_isotropic_hardening(tmp_path):
         plastic = 1e-4 * step - state[0, 0] / (2 * 81500 * 1.26)
         if plastic > 1e-3:
             assert state[0, 0] == pytest.approx(flow_curve(plastic), rel=4e-3)
+
+
+def test_the_title_of_a_single_test_fits_into_the_picture(tmp_path):
+    write_tension(tmp_path / "wire.csv")
+    found = fit.fit([experiments.read_test(tmp_path / "wire.csv", engineering=True)], 81500, 0.26)
+    figure = figures.fit(found, "fitted")
+    figure.canvas.draw()
+    title = figure.get_suptitle()
+    box = next(text for text in figure.texts if text.get_text() == title).get_window_extent()
+    assert 0.0 <= box.x0 < box.x1 <= figure.bbox.width
 
 
 def test_engineering_readings_become_true_ones(tmp_path):

@@ -12,6 +12,7 @@ from coilset.model.material.identification.result import Fit
 from coilset.model.material.law.law import Law
 from coilset.model.material.programs import STRAINS, STRESSES, History, Program
 
+TITLE = 42  # characters of a title that a column of a fit is wide enough for
 GREEK = {"eps": "ε", "gamma": "γ", "sigma": "σ", "tau": "τ"}
 SYMBOLS = {name: GREEK[name[:-2]] + name[-2:] for name in STRAINS["solid"] + STRESSES["solid"]}
 
@@ -132,5 +133,5 @@ def fit(result: Fit, name: str) -> Figure:
                 place.grid(lw=0.3)
         tests = f"{len(result.tests)} test{'s' * (len(result.tests) > 1)}"
         found = f"{name} follows {tests} to within {max(result.scatter):.2g} N/mm² (root mean square)"
-        figure.suptitle(found, fontsize=10)
+        figure.suptitle(textwrap.fill(found, TITLE * len(result.tests)), fontsize=10)
     return figure
