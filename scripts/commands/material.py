@@ -14,10 +14,8 @@ from coilset.scripts.terminal.target import OVERWRITE, folder_target
 if TYPE_CHECKING:  # commands load what they need
     from rich.table import Table
 
-    from coilset.model.material.identification.cyclic import CyclicFit
     from coilset.model.material.law.law import Law
     from coilset.model.material.programs import History, Program
-    from coilset.scripts.terminal.console import Console
 
 app = typer.Typer(
     cls=springs.MaterialGroup,
@@ -158,20 +156,17 @@ def fit(
         unit = UNITS[re.sub(r"_\d+$", "", key)]  # C_1, C_2, ...
         table.add_row(key, f"{value:.6g}", f"{result.standard[key]:.2g}", f"{result.uncertainty[key]:.2g}", unit)
     console.print(table)
-    if isinstance(result, cyclic.CyclicFit):
-        _say_what_is_told(result, console)
+    if isinstance(result, cyclic.CyclicFit) and result.enough < result.terms:
+        many = f"{result.enough} back stress{'es' * (result.enough > 1)}"
+        console.print(f"{many} would do: the others are within the scatter")
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} MPa")
+    for misfit in result.misfits:
+        console.warn(misfit)
+    if result.doubtful:
+        console.warn(f"the tests do not determine {', '.join(result.doubtful)}")
     write_material(file, result.material(name), console)
     write_picture(figures.fit(result, name), picture, console)
-
-
-def _say_what_is_told(fit: "CyclicFit", console: "Console") -> None:
-    """Back stresses that the tests do not determine."""
-    if fit.doubtful:
-        console.print(f"the tests hardly determine {', '.join(fit.doubtful)}")
-    if fit.enough < fit.terms:
-        console.print(f"{fit.enough} back stress{'es' * (fit.enough > 1)} would do: the others are within the scatter")
 
 
 @app.command()

@@ -110,6 +110,24 @@ def test_tension_alone_gives_isotropic_hardening(tmp_path):
             assert state[0, 0] == pytest.approx(flow_curve(plastic), rel=4e-3)
 
 
+@pytest.mark.parametrize("order", ["right", "wrong"])
+def test_a_fit_that_does_not_follow_its_test_is_reported(tmp_path, order):
+    """A reading out of order unloads and reloads the law elastically, which no constants follow."""
+    write_tension(tmp_path / "wire.csv")
+    lines = (tmp_path / "wire.csv").read_text(encoding="utf-8").splitlines()
+    if order == "wrong":
+        lines.insert(-20, lines[-44])
+    (tmp_path / "wire.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    arguments = ["fit", str(tmp_path / "wire.csv"), "--G", "81500", "--nu", "0.26", "--engineering"]
+    arguments += ["--out", str(tmp_path)]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 0, done.output
+    said = " ".join(done.output.split())
+    assert ("the law does not follow this test" in said) == (order == "wrong")
+    assert ("the tests do not determine" in said) == (order == "wrong")
+    assert (tmp_path / "fitted.yaml").exists()
+
+
 def test_the_title_of_a_single_test_fits_into_the_picture(tmp_path):
     write_tension(tmp_path / "wire.csv")
     found = fit.fit([experiments.read_test(tmp_path / "wire.csv", engineering=True)], 81500, 0.26)

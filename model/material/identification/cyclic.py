@@ -94,11 +94,6 @@ class CyclicFit(Fit):
         """Number of back stresses."""
         return sum(name.startswith("gamma") for name in self.constants)
 
-    @property
-    def doubtful(self) -> tuple[str, ...]:
-        """Constants that may as well be half as large, or twice: the tests do not determine them."""
-        return tuple(name for name, value in self.constants.items() if not self.uncertainty[name] < 0.5 * value)
-
     def material(self, name: str) -> dict[str, Any]:
         """Content of a material file."""
         c = self.constants

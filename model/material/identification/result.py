@@ -45,6 +45,22 @@ class Fit:
     scatter: tuple[float, ...]
     work: float
 
+    @property
+    def doubtful(self) -> tuple[str, ...]:
+        """Constants that may as well be half as large, or twice: the tests do not determine them."""
+        return tuple(c for c, value in self.constants.items() if not 2.0 * self.uncertainty[c] < WIDE * abs(value))
+
+    @property
+    def misfits(self) -> tuple[str, ...]:
+        """Tests that the law does not follow, in a sentence each."""
+        greatest = [float(np.abs(test.stress).max()) for test in self.tests]
+        return tuple(
+            f"{test.name}: the rms residual of {scatter:.3g} MPa is {100.0 * scatter / stress:.2g} % of the greatest "
+            f"stress, {stress:.4g} MPa: the law does not follow this test; are its readings right, and in order?"
+            for test, scatter, stress in zip(self.tests, self.scatter, greatest, strict=True)
+            if scatter > POOR * stress
+        )
+
     def material(self, name: str) -> dict[str, Any]:
         """Content of a material file."""
         c = self.constants
