@@ -24,8 +24,9 @@ LEAST_POINTS = 5
 WIDEST_STEP = 1 / 3  # maximum turn between neighbouring points
 WIRE_DIAMETER = "wire_diameter"
 # A point is an outlier if it lies farther than these wire diameters off the curve through its neighbours, and so many
-# times farther than the points usually do.
-OFF, TIMES = 0.2, 20.0
+# times farther than the points usually do; a wire diameter, if it differs by more than THICKER of it from that at both
+# neighbours, which differ by less than half as much.
+OFF, TIMES, THICKER = 0.2, 20.0, 0.1
 
 
 class MeasuredSpec(Strict):
@@ -207,6 +208,8 @@ def _turns(points: np.ndarray, numbers: np.ndarray, path: str | Path) -> tuple[n
 def _refuse_outlier(turn: np.ndarray, places: np.ndarray, wire: np.ndarray, numbers: np.ndarray, path: Path) -> None:
     """Refuse a point that is far off the cubic through its four neighbours in radius or height, as a misprint is.
 
+    So is a wire diameter that its neighbours have not.
+
     Args:
         turn: of the points, shape (n,).
         places: radius and height, mm, shape (n, 2).
@@ -227,5 +230,16 @@ def _refuse_outlier(turn: np.ndarray, places: np.ndarray, wire: np.ndarray, numb
             f"lies {off[worst]:.2g} mm off the curve through its neighbours, the others {np.median(off):.1g} mm; "
             "correct it or leave it out",
             f"point {numbers[i]}",
+            path,
+        )
+    before, here, after = wire[:-2], wire[1:-1], wire[2:]
+    differs = np.minimum(np.abs(here - before), np.abs(here - after))
+    odd = np.flatnonzero((differs > THICKER * here) & (np.abs(after - before) < 0.5 * differs))
+    if len(odd):
+        k = int(odd[0])
+        raise InputError(
+            f"the wire has a diameter of {here[k]:g} mm, and {before[k]:g} and {after[k]:g} mm at the points beside "
+            "it; correct it or leave the point out",
+            f"point {numbers[k + 1]}",
             path,
         )

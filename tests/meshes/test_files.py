@@ -166,10 +166,10 @@ WRONG_TABLES = [
         "".join([HEAD.replace(",wire_diameter", ""), *(row.replace(",5\n", "\n") for row in POINTS)]),
         "has no wire_diameter; give spring.wire_diameter",
     ),
-    # the tenth point is 4.5 rad from the first
+    # from the tenth to the twelfth point, 0.716 to 0.875 turns from the first
     (
-        HEAD + "".join([*POINTS[:9], POINTS[9].replace(",5\n", ",20\n"), *POINTS[10:]]),
-        "the wire is thicker than the coil allows: D/d = 2 at turn 0.716, must be at least 3",
+        HEAD + "".join([*POINTS[:9], *(row.replace(",5\n", ",20\n") for row in POINTS[9:12]), *POINTS[12:]]),
+        "the wire is thicker than the coil allows: D/d = 2 at turn 0.776, must be at least 3",
     ),
 ]
 

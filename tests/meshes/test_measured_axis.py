@@ -155,3 +155,12 @@ def test_a_misprinted_point_is_named(tmp_path, example, column, number):
     (tmp_path / "scan.csv").write_text("\n".join(map(",".join, rows)))
     with pytest.raises(InputError, match=rf"point {number}: lies .* mm off the curve through its neighbours"):
         MeasuredSpec(file=str(tmp_path / "scan.csv")).build()
+
+
+@pytest.mark.parametrize("number", [3, 60])
+def test_a_misprinted_wire_diameter_is_named(tmp_path, example, number):
+    rows = [line.split(",") for line in (example.parent / "springs" / "measured.csv").read_text().split()]
+    rows[number][3] = "5.8"
+    (tmp_path / "scan.csv").write_text("\n".join(map(",".join, rows)))
+    with pytest.raises(InputError, match=rf"point {number}: the wire has a diameter of 5\.8 mm, and 5 and 5 mm at"):
+        MeasuredSpec(file=str(tmp_path / "scan.csv")).build()
