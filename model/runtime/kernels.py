@@ -17,7 +17,7 @@ __all__ = ["COMPILED", "INLINE", "KERNEL", "PASTED", "njit"]
 COMPILED = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 KERNEL = COMPILED | {"fastmath": {"contract"}}  # the material's: multiply-add contracted
 INLINE = KERNEL | {"forceinline": True}  # put into their caller
-# Put into their only caller before it is compiled: numba optimises all of a function once more with each that calls it.
+# Put into their few callers before these are compiled: numba optimises a function once more with each that calls it.
 PASTED = KERNEL | {"inline": "always"}
 
 ROOT = Path(__file__).resolve().parents[2]  # the folder that is imported as coilset

@@ -303,9 +303,9 @@ def test_tangent(components, entries, yielding):
 
 
 @njit(**KERNEL)
-def by_iteration(law, old, de, new, C):
+def by_iteration(law, old, de, new, C, room):
     """One increment, never in closed form."""
-    return increment.advance(law, old, de, new, C, np.empty(1, ROOM))
+    return increment.advance(law, old, de, new, C, room)
 
 
 @pytest.mark.parametrize("entries", [CREEP, GAROFALO, CREEP | {"hardening": "time"}])
@@ -324,7 +324,7 @@ def test_both_ways_through_a_rods_point(entries, yielding):
             over = creeping.over(middle, creeping.clock(1.0 + hours, COLD + 60, middle))
             de, other, D = 0.3 * size * _unit(rng, 3), np.empty_like(state), np.empty((3, 3))
             (new,), (C,), _ = follow(over, state[None], de[None])
-            assert by_iteration(over, state, de, other, D) >= 0
+            assert by_iteration(over, state, de, other, D, np.empty(1, ROOM)) >= 0
             np.testing.assert_allclose(new[:3], other[:3], rtol=1e-8, atol=1e-7)
             np.testing.assert_allclose(new[3:], other[3:], rtol=1e-7, atol=1e-14)
             np.testing.assert_allclose(C, D, atol=1e-6 * law.E)

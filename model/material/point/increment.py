@@ -76,7 +76,8 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
             included where the material creeps.
         new: the state at the end; written.
         C: dσ/dε, shape (3, 3) or (6, 6), N/mm²; written.
-        room: work space, shape (1,) of ROOM.
+        room: work space, shape (1,) of ROOM; numba frees an array after its last use, and its record is used until the
+            end: the caller keeps it, as an argument or over a loop.
 
     Returns:
         Number of local iterations, 0 for an elastic increment, -1 if there was no convergence, -2 if the point heated
