@@ -77,11 +77,12 @@ class MeasuredSpec(Strict):
         if axis is not None:
             points = axis.moved(points)
             turn, hand, phase = _turns(points, numbers, path)
-        _refuse_outlier(turn, np.column_stack([np.hypot(*points[:, :2].T), points[:, 2]]), wire, numbers, path)
+        places = np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])  # radius and height
+        _refuse_outlier(turn, places, wire, numbers, path)
+        _refuse_odd_wire(wire, numbers, path)
         # radius and height have the same noise as a coordinate
         fit = functions.smoothed if self.noise > 0 else lambda t, y, noise: functions.tabulated(t, y, "spline")
-        radius = fit(turn, np.hypot(points[:, 0], points[:, 1]), self.noise)
-        height = fit(turn, points[:, 2], self.noise)
+        radius, height = (fit(turn, values, self.noise) for values in places.T)
         bottom, top = bottom_and_top(self.end_coils)
         closed = bottom.end_turns + top.end_turns
         if closed >= turn[-1]:
@@ -208,8 +209,6 @@ def _turns(points: np.ndarray, numbers: np.ndarray, path: str | Path) -> tuple[n
 def _refuse_outlier(turn: np.ndarray, places: np.ndarray, wire: np.ndarray, numbers: np.ndarray, path: Path) -> None:
     """Refuse a point that is far off the cubic through its four neighbours in radius or height, as a misprint is.
 
-    So is a wire diameter that its neighbours have not.
-
     Args:
         turn: of the points, shape (n,).
         places: radius and height, mm, shape (n, 2).
@@ -232,6 +231,10 @@ def _refuse_outlier(turn: np.ndarray, places: np.ndarray, wire: np.ndarray, numb
             f"point {numbers[i]}",
             path,
         )
+
+
+def _refuse_odd_wire(wire: np.ndarray, numbers: np.ndarray, path: Path) -> None:
+    """Refuse a wire diameter, mm, that differs from both of its neighbours, which agree; other arguments as above."""
     before, here, after = wire[:-2], wire[1:-1], wire[2:]
     differs = np.minimum(np.abs(here - before), np.abs(here - after))
     odd = np.flatnonzero((differs > THICKER * here) & (np.abs(after - before) < 0.5 * differs))

@@ -45,9 +45,10 @@ def _renamed(case: Case) -> Iterator[Warning]:
 
 
 def _accuracy(case: Case) -> Iterator[Warning]:
-    if isinstance(case.accuracy, float) and case.accuracy >= COARSE:
-        message = f"errors of {100.0 * case.accuracy:g} % of force and set are allowed; 0.2 % is 0.002, or '0.2 %'"
-        yield Warning("accuracy", "accuracy", message, case.accuracy, COARSE)
+    allowed = case.steps_error
+    if allowed is not None and allowed >= COARSE:
+        message = f"errors of {100.0 * allowed:g} % of force and set are allowed; 0.2 % is 0.002, or '0.2 %'"
+        yield Warning("accuracy", "accuracy", message, allowed, COARSE)
 
 
 def _estimated(case: Case) -> Iterator[Warning]:

@@ -153,15 +153,16 @@ def test_forces_beside_the_formulas_of_a_pull_are_those_of_the_first_or_of_the_f
     assert (shown["force at 130 mm"].found, shown["force at 130 mm"].why) == (pytest.approx(325.0), "first pull")
 
 
+def pressed_to_block(folder, force, **entries):
+    """A run that ends at block under a force; entries of its summary."""
+    run = from_results.read(run_folder(folder))
+    heights, forces = np.append(run.heights, 57.5), np.append(run.forces, force)
+    return replace(run, heights=heights, forces=forces, summary=run.summary | entries)
+
+
 def test_stress_at_block_is_that_of_the_formula_also_beside_a_run(tmp_path):
     """Coils that lie on each other carry 8000 N past the wire; R s is 782 N."""
-    run = from_results.read(run_folder(tmp_path / "run"))
-    run = replace(
-        run,
-        heights=np.append(run.heights, 57.5),
-        forces=np.append(run.forces, 8000.0),
-        summary=run.summary | {"force_max_N": 8000.0},
-    )
+    run = pressed_to_block(tmp_path / "run", 8000.0, force_max_N=8000.0)
     alone = Sheet(PRINTED, DM.elastic(5.0), 1260.0, DM)
     beside = replace(alone, found=run)
     assert rows(beside)["force at block Fc"].found == 8000.0
@@ -171,13 +172,7 @@ def test_stress_at_block_is_that_of_the_formula_also_beside_a_run(tmp_path):
 
 
 def test_what_a_run_found_at_block_and_when_it_buckled(tmp_path):
-    run = from_results.read(run_folder(tmp_path / "run"))
-    run = replace(
-        run,
-        heights=np.append(run.heights, 57.5),
-        forces=np.append(run.forces, 800.0),
-        summary=run.summary | {"buckling_travel_mm": 41.0},
-    )
+    run = pressed_to_block(tmp_path / "run", 800.0, buckling_travel_mm=41.0)
     shown = rows(Sheet(PRINTED, DM.elastic(5.0), 1260.0, found=run))
     assert shown["force at block Fc"].found == 700.0  # of the summary
     assert shown["growth of D to block"].found == pytest.approx(0.2)

@@ -47,8 +47,8 @@ def first_compression(steps: Sequence[Step]) -> Curve:
 def finished(steps: Sequence[Step], phase: int, height: float, whole: float = 0.0) -> Curve:
     """The curve of the finished spring, after a release that ended at a seat height, mm.
 
-    Those of the compression after the released phase, if it covers what `makers_rate` needs of the travel `whole` to
-    block; else those of the release, backwards.
+    That of the compression after the released phase, if it covers what `makers_rate` needs of the travel `whole` to
+    block; else that of the release, backwards.
     """
     before = [step for step in steps if step.phase <= phase]
     later = [step for step in steps if step.phase > phase]
