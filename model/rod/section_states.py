@@ -11,6 +11,7 @@ from coilset.model.body.state import Field, State, Where
 from coilset.model.material.creep.law import RateLaw
 from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
 from coilset.model.section.kinds import Sections
+from coilset.model.section.warping import KNOWN
 
 POINTS, SURFACE = "point_state", "surface_state"
 KEPT = 4096  # elements up to which all points' trial states are kept: as many as a processor's caches may hold
@@ -53,7 +54,7 @@ class SectionStates:
     @property
     def bearing(self) -> list[str]:
         """Names of the arrays on which the section forces depend."""
-        return [name for name in self._fields if name != SURFACE]
+        return [name for name in self._fields if name not in (SURFACE, KNOWN)]
 
     def __getitem__(self, name: str) -> np.ndarray:
         """A trial array, or, where it lies in place, at the last equilibrium."""

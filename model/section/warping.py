@@ -11,8 +11,9 @@ Nothing works on w, so that ∫ σ : δε g dA = s · δe for all δe, δw. w is
 the six rigid modes, which would only rename Γ and K: ∫ w dA = 0, ∫ r × w dA = 0. Newton's method finds the a at given
 e, and the section tangent follows by condensation, D = D_ee − D_ea D_aa⁻¹ D_ae. The spin of the increment is left out.
 
-The iteration begins where the slope da/de of the last equilibrium leads, so that stresses and resultants are a function
-of the state at the last equilibrium and of the strains, whatever was tried in between.
+The iteration begins where the slope da/de of a known warping leads, the one at the last equilibrium or the one found
+last on the way from it, whose strains are nearer. Stresses and resultants are a function of the state at the last
+equilibrium and of the strains, whatever was tried in between, but for the tolerance of the warping.
 """
 
 import copy
@@ -27,7 +28,7 @@ from coilset.model.material.law.functions import ROWS_START, SHEAR, YOUNG
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.loop import PointLaw, flow_points
 from coilset.model.material.point.groups import hooke
-from coilset.model.runtime.kernels import njit
+from coilset.model.runtime.kernels import KERNEL, njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import (
@@ -46,6 +47,7 @@ from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 
+KNOWN = "warping_strain"  # section strains to which the trial warping and its slope belong
 DECIMALS = 12  # of κ r and τ r, to which sections of one geometry agree
 
 
@@ -122,7 +124,7 @@ class WarpingSections:
         """Unstressed points, `point_state` and `surface_state` as in `FibreSections`, and the warping.
 
         `warping` are the a, shape (cells, sections, unknowns), and `warping_slope` is da/de, shape (cells, sections,
-        unknowns, 6).
+        unknowns, 6); `warping_strain` are the section strains at which they were found, shape (cells, sections, 6).
         """
         row = self.law_over_time.unstressed()
         shape = self.placement.stretch.shape
@@ -131,6 +133,7 @@ class WarpingSections:
             "surface_state": np.tile(row, (*shape, self.rim.y.shape[1], 1)),
             "warping": np.zeros((*shape, self.unknowns)),
             "warping_slope": np.zeros((*shape, self.unknowns, 6)),
+            KNOWN: np.zeros((*shape, 6)),
         }
 
     def update(
@@ -142,8 +145,12 @@ class WarpingSections:
         D: np.ndarray,
         with_tangent: bool = True,
     ) -> bool:
-        """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent."""
+        """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent.
+
+        Where `trial` has no `warping_strain`, nothing is known of its warping.
+        """
         place, law = self.placement, self.law_over_time.over(start, trial)
+        known = trial[KNOWN] if KNOWN in trial else np.full(strain.shape, np.nan)
         return self.threads.run(
             update_sections,
             len(self.radius),
@@ -160,6 +167,8 @@ class WarpingSections:
             trial["point_state"],
             trial["warping"],
             trial["warping_slope"],
+            strain,
+            known,
             s,
             D,
             self.iterations,
@@ -214,6 +223,8 @@ def update_sections(
     new: np.ndarray,
     a: np.ndarray,
     slope: np.ndarray,
+    strain: np.ndarray,
+    known: np.ndarray,
     s: np.ndarray,
     D: np.ndarray,
     count: np.ndarray,
@@ -230,6 +241,8 @@ def update_sections(
             own strains, at the last equilibrium, shapes (cells, sections, points, n_state), (cells, sections, unknowns)
             and (cells, sections, unknowns, 6); not changed.
         new, a, slope: written, the same at the end of the increment.
+        strain: section strains there, shape (cells, sections, 6).
+        known: those to which `a` and `slope` belong, NaN if to none; written.
         count: sections and local iterations are added to the row of the part, shape (parts, 2).
 
     Returns:
@@ -238,27 +251,51 @@ def update_sections(
     n, points = a.shape[2], at.w.shape[1]
     w = work_space(points, n)
     inverse, dA, work = np.empty(points), np.empty(points), np.empty((6, 6))
+    change, way = np.empty(6), np.empty(6)
     for c in range(ends[part], ends[part + 1]):
         for g in range(de.shape[1]):
             P, of = placement[c, g], place(at, at.number[c, g], inverse, dA)
+            R = of.bend.R
             to_section(P, de[c, g], w.step)
+            for j in range(6):
+                change[j] = strain[c, g, j] - known[c, g, j]
+                known[c, g, j] = math.nan
+            to_section(P, change, way)
             good = False
-            for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
-                for m in range(n):
-                    a[c, g, m] = old_a[c, g, m]
-                    for j in range(6):
-                        a[c, g, m] += follow * old_slope[c, g, m, j] * w.step[j]
+            if _length(R, way) < _length(R, w.step):
+                _lead(slope[c, g], way, a[c, g])
                 good = find_warping(law, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
-                if good:
-                    break
+            for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
+                if not good:
+                    for m in range(n):
+                        a[c, g, m] = old_a[c, g, m]
+                    if follow > 0.0:
+                        _lead(old_slope[c, g], w.step, a[c, g])
+                    good = find_warping(law, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
             if not good:
                 return False
             slopes(w, slope[c, g])
             if not math.isfinite(w.rest[:6].sum()):
                 return False
             to_chord(P, stretch[c, g], w.rest[:6], w.K[:6], work, s[c, g], D[c, g])
+            for j in range(6):
+                known[c, g, j] = strain[c, g, j]
             count[part, 0] += 1
     return True
+
+
+@njit(**KERNEL)
+def _length(R: float, e: np.ndarray) -> float:
+    """Square of a change of section strains: of stretches, and of strains at the wire's surface."""
+    return e[0] ** 2 + e[1] ** 2 + e[2] ** 2 + R * R * (e[3] ** 2 + e[4] ** 2 + e[5] ** 2)
+
+
+@njit(**KERNEL)
+def _lead(slope: np.ndarray, way: np.ndarray, a: np.ndarray) -> None:
+    """Add da/de times a change of the section strains to the warping."""
+    for m in range(len(a)):
+        for j in range(6):
+            a[m] += slope[m, j] * way[j]
 
 
 @njit(cache=True, nogil=True)
