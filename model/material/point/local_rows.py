@@ -48,7 +48,7 @@ from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 # below it with the weight of the one above, 0 without.
 Points = namedtuple("Points", "first size temperature E G row weight")
 
-GROUP = 64
+GROUP = 96
 NEWTON = 8  # iterations at most
 RUNNING, CONVERGED, LEFT_OUT = 0.0, 1.0, 2.0  # how far a point has come in Newton's method
 
