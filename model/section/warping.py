@@ -149,9 +149,8 @@ class WarpingSections:
 
         Where `trial` has no `warping_strain`, nothing is known of its warping.
         """
-        place, law = self.placement, self.law_over_time.over(start, trial)
-        known = trial[KNOWN] if KNOWN in trial else np.full(strain.shape, np.nan)
-        return self.threads.run(
+        place, law, known = self.placement, self.law_over_time.over(start, trial), trial.get(KNOWN, np.array(np.nan))
+        good = self.threads.run(
             update_sections,
             len(self.radius),
             self.placement.stretch.shape[1] * self.weights.shape[1],
@@ -159,6 +158,7 @@ class WarpingSections:
             self.inside,
             self.elastic,
             strain - start["strain"],
+            strain - known,
             place.matrices,
             place.stretch,
             start["point_state"],
@@ -167,12 +167,12 @@ class WarpingSections:
             trial["point_state"],
             trial["warping"],
             trial["warping_slope"],
-            strain,
-            known,
             s,
             D,
             self.iterations,
         )
+        known[...] = strain if good and KNOWN in trial else np.nan
+        return good
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Bring the points on the wire's surface to the end of the increment; as `FibreSections.update_surface`."""
@@ -215,6 +215,7 @@ def update_sections(
     at: Tables,
     elastic: Elastic,
     de: np.ndarray,
+    way: np.ndarray,
     placement: np.ndarray,
     stretch: np.ndarray,
     old: np.ndarray,
@@ -223,8 +224,6 @@ def update_sections(
     new: np.ndarray,
     a: np.ndarray,
     slope: np.ndarray,
-    strain: np.ndarray,
-    known: np.ndarray,
     s: np.ndarray,
     D: np.ndarray,
     count: np.ndarray,
@@ -237,12 +236,11 @@ def update_sections(
         at: geometry of the sections.
         elastic: stiffness of elastic sections, and of elastic points.
         de, placement, stretch, s, D: as in `fibres.update_sections`.
+        way: increments from the section strains to which `a` and `slope` belong, shape as `de`; NaN if to none.
         old, old_a, old_slope: state of the points with all six stresses, warping, and its slope da/de in the section's
             own strains, at the last equilibrium, shapes (cells, sections, points, n_state), (cells, sections, unknowns)
             and (cells, sections, unknowns, 6); not changed.
         new, a, slope: written, the same at the end of the increment.
-        strain: section strains there, shape (cells, sections, 6).
-        known: those to which `a` and `slope` belong, NaN if to none; written.
         count: sections and local iterations are added to the row of the part, shape (parts, 2).
 
     Returns:
@@ -251,19 +249,15 @@ def update_sections(
     n, points = a.shape[2], at.w.shape[1]
     w = work_space(points, n)
     inverse, dA, work = np.empty(points), np.empty(points), np.empty((6, 6))
-    change, way = np.empty(6), np.empty(6)
+    near = np.empty(6)
     for c in range(ends[part], ends[part + 1]):
         for g in range(de.shape[1]):
             P, of = placement[c, g], place(at, at.number[c, g], inverse, dA)
-            R = of.bend.R
             to_section(P, de[c, g], w.step)
-            for j in range(6):
-                change[j] = strain[c, g, j] - known[c, g, j]
-                known[c, g, j] = math.nan
-            to_section(P, change, way)
+            to_section(P, way[c, g], near)
             good = False
-            if _length(R, way) < _length(R, w.step):
-                _lead(slope[c, g], way, a[c, g])
+            if _length(of.bend.R, near) < _length(of.bend.R, w.step):
+                _lead(slope[c, g], near, a[c, g])
                 good = find_warping(law, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
             for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
                 if not good:
@@ -278,8 +272,6 @@ def update_sections(
             if not math.isfinite(w.rest[:6].sum()):
                 return False
             to_chord(P, stretch[c, g], w.rest[:6], w.K[:6], work, s[c, g], D[c, g])
-            for j in range(6):
-                known[c, g, j] = strain[c, g, j]
             count[part, 0] += 1
     return True
 

@@ -14,6 +14,7 @@ from coilset.model.runtime import threads
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import polar
+from coilset.model.section.warping import KNOWN
 
 TWIST, BENDING = 3, 4  # of the section strains
 
@@ -50,8 +51,9 @@ class Path:
 
 
 def follower(path):
-    """The finer path of all arrays of the path's sections."""
-    return FinerPath(path.sections, path.state, list(path.points), THESIS, MPI.COMM_SELF)
+    """The finer path of all arrays of the path's sections on which forces depend."""
+    names = [name for name in path.points if name != KNOWN]
+    return FinerPath(path.sections, path.state, names, THESIS, MPI.COMM_SELF)
 
 
 @pytest.mark.parametrize("steps", [4, 8])

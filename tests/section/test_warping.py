@@ -70,13 +70,27 @@ def test_shear_factors_meet_goehners_equation(elastic, index):
 
 
 def test_stresses_are_a_function_of_the_last_equilibrium(ck15):
-    """Whatever was tried in between: the same bits."""
+    """Whatever was tried in between: as far as the iteration's tolerance lets them, and to the bit after a failure."""
     wire = HelixSection(ck15, "warping", 5.0, 5.0)
     there = np.array([1e-4, 0, 1e-4, 2e-3, 0, 4e-4])
     first = wire.update(there)[0].copy()
-    for other in (3.0 * there, -there, there[::-1]):
+    for other in (3.0 * there, -there, there[::-1], 1.001 * there):
         wire.update(other)
+        np.testing.assert_allclose(wire.update(there)[0], first, rtol=0, atol=1e-9 * np.abs(first).max())
+    assert (wire.update(there)[0] != first).any()
+    with pytest.raises(ValueError):
+        wire.update(np.full(6, np.nan))
     np.testing.assert_array_equal(wire.update(there)[0], first)
+
+
+def test_a_known_warping_saves_iterations(ck15):
+    """Beside strains that were tried, beyond yield: one iteration, where the slope at the start leads to three."""
+    wire, there = HelixSection(ck15, "warping", 5.0, 5.0), np.array([1e-4, 0, 1e-4, 2e-3, 0, 4e-4])
+    counts = [0]
+    for strain in (there, (1.0 + 1e-6) * there):
+        wire.update(strain)
+        counts.append(wire.sections.iterations[0, 1])
+    assert list(np.diff(counts)) == [2 * 3, 2 * 1]  # of its two sections
 
 
 def test_warping_does_no_work(ck15):
