@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from mpi4py import MPI
 
+from coilset.model.base.agreement import max_of_ranks
 from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.body.state import State
@@ -140,7 +141,21 @@ class LoadHistory:
         """Where and how the wire gives way most easily at the last equilibrium, in words; collective."""
         self.system.restore()
         mode = self.stability.displacements(self.stability.weakest(self.newton.iteration.load).mode)
-        return "" if not np.isfinite(mode).all() else mode_in_words(mode, self.setup.turns)
+        where = mode_in_words(mode, self.setup.turns) if np.isfinite(mode).all() else ""
+        return "; ".join(reason for reason in (where, self._law_to_try()) if reason)
+
+    def _law_to_try(self) -> str:
+        """What else to try where the law may be why there is no equilibrium, in words; collective.
+
+        κ Ť begins at once with flow: an increment along the yield surface meets another stiffness just outside of it.
+        """
+        work = self.rod.point_state[..., self.rod.sections.components.index("b")].max(initial=0.0)
+        if not self.law.data.deviates_from_normality or max_of_ranks(self.rod.comm, work) == 0.0:
+            return ""
+        return (
+            f"{self.law.name} deviates from normality, abruptly where wire is loaded along its yield surface: "
+            "see whether it comes further with non_normality: none in a copy of the material"
+        )
 
     def use_method(self, name: str) -> None:
         """Switch to another iteration method.

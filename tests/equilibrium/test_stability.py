@@ -100,6 +100,14 @@ def test_what_gives_way_is_named():
     assert mode_in_words(np.outer(near, [0.0, 0.5, 1.0]), turns) == words + "up and down"
 
 
+def test_a_law_that_deviates_from_normality_is_named_once_wire_yields():
+    """κ is zero before, and in other laws."""
+    for material, travel, named in (("ck15", 1.0, False), ("ck15", 15.0, True), ("mixed", 15.0, False)):
+        analysis = pressed(travel, 2, mesh=4, material=material, spring=LONG | {"turns": 3})
+        analysis.run()
+        assert ("; ck15 deviates from normality" in analysis._gives_way()) is named
+
+
 def test_factors_of_other_libraries_show_no_pivots():
     """PETSc cannot ask MUMPS for them: the symmetric part is factorised as with methods that keep a matrix."""
     analysis = pressed(20.0, 1, mesh=4, solver={"options": {"pc_factor_mat_solver_type": "mumps"}})

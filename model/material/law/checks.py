@@ -35,7 +35,7 @@ def _check_rate(data: MaterialFile, refuse: Refuse) -> None:
     """Overstress needs a yield surface, and flow that it limits as a whole."""
     if any(at.isotropic == "none" for at in data.temperatures):
         refuse("rate", "a material that never yields has no rate-dependent yield; leave it out")
-    if any(at.non_normality != "none" for at in data.temperatures):
+    if data.deviates_from_normality:
         refuse(
             "rate",
             "cannot be combined with non_normality: overstress sets the rate of all plastic strain, κ ties a part "

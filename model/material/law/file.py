@@ -246,6 +246,11 @@ class MaterialFile(Strict):
         RateDependence | None, Field(description="yield that rises with the strain rate; left out: it does not")
     ] = None
 
+    @property
+    def deviates_from_normality(self) -> bool:
+        """Whether κ is not zero."""
+        return any(at.non_normality != "none" for at in self.temperatures)
+
 
 KINDS = (Elasticity, IsotropicHardening, Saturation, KinematicHardening, BackStress, NonNormality)
 CURVES = (Swift, Voce, RambergOsgood, Table)
