@@ -48,6 +48,7 @@ START_GRID = 5  # starting points along each unknown for the search with the sur
 CLOSE = 1e-2  # of the bounds' width: a step over which the surrogate is practically linear
 STILL = 1e-3  # of the bounds' width: a smaller step ends the search for the nearest of many springs
 LOOSE = 1e-3  # relative deviation up to which such a search goes on from a spring that misses a condition
+NEAREST = 1e-11  # of half the squared distance from the case's own values; the surrogate's rounding allows no less
 POSSIBLE = 1e-6  # relative deviation up to which the model counts as meeting the conditions
 
 
@@ -385,6 +386,7 @@ class Search:
     ) -> np.ndarray | None:
         """Where a result meets the conditions nearest to the case's own values; None if it does nowhere."""
         own = np.where(np.isnan(self._start), 0.5, self._start)
+        values, slopes = _kept(answer), _kept(lambda v: self.slopes(answer, v))
         parts = []
         for kind, sense, sign in (("eq", EQUALS, 1.0), ("ineq", AT_MOST, -1.0), ("ineq", AT_LEAST, 1.0)):
             rows = np.flatnonzero(self._sense == sense)
@@ -392,8 +394,8 @@ class Search:
                 parts.append(
                     {
                         "type": kind,
-                        "fun": lambda v, rows=rows, sign=sign: sign * answer(v)[rows],
-                        "jac": lambda v, rows=rows, sign=sign: sign * self.slopes(answer, v)[rows],
+                        "fun": lambda v, rows=rows, sign=sign: sign * values(v)[rows],
+                        "jac": lambda v, rows=rows, sign=sign: sign * slopes(v)[rows],
                     }
                 )
         found = minimize(
@@ -403,7 +405,7 @@ class Search:
             method="SLSQP",
             bounds=list(zip(low, high, strict=True)),
             constraints=parts,
-            options={"ftol": 1e-15, "maxiter": 100},
+            options={"ftol": NEAREST, "maxiter": 100},
         )
         x = np.clip(found.x, low, high)
         return x if np.abs(self.missed(answer(x))).max() <= POSSIBLE else None
@@ -413,3 +415,16 @@ class Search:
     ) -> Found:
         slopes = self.slopes(self.surrogate, u) + E
         return Found(self.value(u), best, off, slopes, met, SurrogateError(u, off - base, E), self, self.evaluations)
+
+
+def _kept(function: Callable[[np.ndarray], np.ndarray]) -> Callable[[np.ndarray], np.ndarray]:
+    """A function that keeps its value at the last place: conditions of each kind are evaluated by themselves."""
+    place, last = np.empty(0), np.empty(0)
+
+    def value(x: np.ndarray) -> np.ndarray:
+        nonlocal place, last
+        if not np.array_equal(place, x):
+            place, last = x.copy(), function(x)
+        return last
+
+    return value
