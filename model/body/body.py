@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
+from contextlib import AbstractContextManager, nullcontext
 from typing import NamedTuple
 
 import numpy as np
@@ -95,6 +96,14 @@ class Body(ABC):
             share: with the section forces predicted after this share of the correction; None: with the actual ones.
         """
         raise NotImplementedError
+
+    def judged(self) -> AbstractContextManager[None]:
+        """With the tangents by which the stability of the trial state is judged.
+
+        A law that begins to flow abruptly has derivatives, of where in the step this is, that are of either sign and
+        hundreds of times larger than moduli. They hold for changes of the whole step; a disturbance comes after it.
+        """
+        return nullcontext()
 
     def tangent(self, matrix: PETSc.Mat) -> None:
         """Add the derivative of the internal forces at the trial state to a matrix, without assembling it."""

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 
 import numpy as np
@@ -314,6 +315,18 @@ class Rod(Body):
                 lever.keep_force(cells, forces)
                 lever.carry_forces(cells, forces)
             add_element_vectors(forces, self.element_dofs[cells], vector)
+
+    @contextmanager
+    def judged(self) -> Iterator[None]:
+        """With tangents that hold where κ sets in; see Body."""
+        D = self.coefficients.D
+        found = D.copy()
+        if self.law.data.deviates_from_normality and not self._points.hold_onset(D):
+            D[:] = found
+        try:
+            yield
+        finally:
+            D[:] = found
 
     def to_charts(self, values: np.ndarray) -> None:
         """Replace the moments m at the owned nodes by Tᵀ m; see Body."""

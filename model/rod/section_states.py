@@ -5,6 +5,8 @@ Their trial states would fill as much memory as those at the last equilibrium, a
 it. So an evaluation keeps one element's at a time, and a step's end finds them once more.
 """
 
+import copy
+
 import numpy as np
 
 from coilset.model.body.state import Field, State, Where
@@ -63,6 +65,14 @@ class SectionStates:
     def update(self, s: np.ndarray, D: np.ndarray) -> bool:
         """Advance all sections to the trial strains; `s`, `D` and what it returns are those of `Sections.update`."""
         return bool(self._sections.update(self._strain.trial, self._start, self._on_the_way, s, D))
+
+    def hold_onset(self, D: np.ndarray) -> bool:
+        """Write the section tangents at the trial strains of a law that holds where κ sets in; as `Sections.update`."""
+        sections, strain = copy.copy(self._sections), self._strain.trial
+        sections.law_over_time = sections.law_over_time.held()
+        end = self._on_the_way | {name: self._on_the_way[name].copy() for name in self.bearing}
+        end.pop(KNOWN, None)
+        return bool(sections.update(strain, self._start, end, np.empty(strain.shape), D))
 
     def follow(self) -> None:
         """Bring what lies in place to the end of the step."""

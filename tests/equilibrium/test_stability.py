@@ -106,6 +106,10 @@ def test_a_law_that_deviates_from_normality_is_named_once_wire_yields():
         analysis = pressed(travel, 2, mesh=4, material=material, spring=LONG | {"turns": 3})
         analysis.run()
         assert ("; ck15 deviates from normality" in analysis._gives_way()) is named
+        found = (D := analysis.rod.coefficients.D).copy()
+        with analysis.rod.judged():
+            assert np.linalg.eigvalsh(D + np.swapaxes(D, -1, -2)).min() > 0.0
+        np.testing.assert_array_equal(D, found)
 
 
 def test_factors_of_other_libraries_show_no_pivots():

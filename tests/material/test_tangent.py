@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from coilset.model.material import library
+from coilset.model.material.law.functions import HELD
 from coilset.model.material.point import points
+from coilset.model.material.point.loops import follow
 
 STEPS = 10.0 ** np.arange(-2.5, -4.01, -0.5)
 
@@ -102,6 +104,34 @@ def test_neutral_loading_of_the_rod():
     assert points.update(law, state, D[None])[2][0] > 0
     relative = remainders(law, s, D, np.array([1.0, 1.3, 0.4]))
     assert_second_order(relative)
+
+
+def test_held_tangents_are_positive_where_kappa_sets_in():
+    """Nearly along the yield surface, within its cone of neutral loading and entering it: the same stresses.
+
+    The derivatives have negative eigenvalues there, of several moduli. Tangents that hold the place of the onset and
+    the smaller κ have none, and elsewhere they are the same.
+    """
+    law = library.load("ck15", spin=False)
+    state = points.initial_state(law, 1)
+    for _ in range(20):
+        state = points.update(law, state, np.array([[0.003, 0.006, 0.0]]))[0]
+    n = np.array([state[0, 0] / 1.5 - state[0, 3], *(state[0, 1:3] - state[0, 4:6])])
+    outward = np.array([1.5 * n[0] * law.E / 1.5, 2.0 * n[1] * law.G, 0.0])  # n:e of unit strains
+    along = np.array([-outward[1], outward[0], 0.0]) / np.linalg.norm(outward)
+    inside = state.copy()
+    inside[0, :3] -= 1e-6 * np.array([1.5, 1.0, 1.0]) * n
+    parameters = law.parameters()
+    parameters[HELD] = 1.0
+    negative = []
+    for start, strain in ((state, along), (inside, along), (state, outward / np.linalg.norm(outward))):
+        exact, held = (follow(one, start, 1e-4 * strain[None]) for one in (law.parameters(), parameters))
+        np.testing.assert_allclose(held[0], exact[0], rtol=1e-14)
+        assert held[2][0] > 0
+        least = [np.linalg.eigvalsh(C[0] + C[0].T)[0] / 2 for C in (exact[1], held[1])]
+        assert least[1] > 0.0
+        negative.append(least[0] < -law.G)
+    assert negative == [True, True, False]
 
 
 def test_elastic_tangent():

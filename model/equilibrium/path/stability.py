@@ -102,7 +102,8 @@ class Stability:
     def _factors(self, load: Load) -> PETSc.PC:
         """Factors of the tangent at the last evaluation; without friction those of its symmetric part."""
         tangent, symmetric = self.iteration.matrix, self.system.is_symmetric
-        self.system.last_tangent(load, tangent, at_step_start=True)
+        with self.system.body.judged():
+            self.system.last_tangent(load, tangent, at_step_start=True)
         self._matrix = matrix = tangent.mat.copy()
         if symmetric:
             transposed = tangent.mat.copy()

@@ -1,10 +1,12 @@
 """The law of a section's points over a step: without time or with it."""
 
+import copy
 from collections.abc import Mapping
 
 import numpy as np
 
 from coilset.model.material.creep.law import CREEP_COLUMNS, TEMPERATURE, CreepLaw, RateLaw
+from coilset.model.material.law.functions import HELD
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.loop import PointLaw
 from coilset.model.material.point.loops import with_loop
@@ -54,6 +56,14 @@ class LawOverTime:
         start = self._law.reference_temperature if self._temperature is None else self._temperature
         own, more = 2 * components + 1, components * max(self._law.n_terms - 1, 0)
         return np.concatenate([row[:, :own], [[start, 0.0]], np.zeros((1, more))], axis=1)
+
+    def held(self) -> "LawOverTime":
+        """The law without time whose tangents hold where κ sets in, see `functions.HELD`."""
+        held, (address, parts) = copy.copy(self), self._point_law
+        plastic = parts.plastic.copy()
+        plastic[HELD] = 1.0
+        held._point_law = PointLaw(address, parts._replace(plastic=plastic))
+        return held
 
     def over(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> PointLaw:
         """The law from one state to the next; without a `clock` between them it is the law without time.

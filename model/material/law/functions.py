@@ -23,7 +23,8 @@ CHANGE = 3  # K: prescribed change of temperature over the increment; 0: isother
 N_ROWS = 4  # number of temperatures
 RATE = 5  # 1/(ṗ₀ Δt) of an increment that takes the time Δt; 0: yield does not depend on the rate
 EXPONENT = 6  # m of rate-dependent yield, see `overstress`; 0: yield never depends on the rate
-ROWS_START = 7
+HELD = 7  # 1: tangents hold the place where κ sets in, and the κ of neutral loading; 0: they follow them
+ROWS_START = 8
 
 # A row: temperature, elastic constants, then the constants of 6.2.2 by their names there; KAPPA is a/(2G). CURVE is
 # where in `p` the points of k² begin, NODES their number, 0 if k² is that of 6.2.2.

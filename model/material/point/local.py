@@ -52,7 +52,7 @@ from collections import namedtuple
 import numpy as np
 
 from coilset.model.material.law.exponential import decay
-from coilset.model.material.law.functions import Functions, functions
+from coilset.model.material.law.functions import HELD, Functions, functions
 from coilset.model.runtime.kernels import INLINE, KERNEL, njit
 
 MAX_ITERATIONS = 60
@@ -248,6 +248,8 @@ def _neutral(p: np.ndarray, temperature: float, start: Start, values: Functions)
             a, c = Turn(1.0, xa, 0.0, 0.0, 0.0, dxa), Turn(1.0, xc, 0.0, 0.0, 0.0, dxc)
             inverse = 1.0 / (dk2 * db - 2.0 * ndxe)
             moves = inverse if work > 0.0 else 0.0  # else b* is kept
+            if p[HELD] > 0.0:
+                return Local(iteration, b, zeta, 0.0, a, c, 0.0, 0.0, 0.0, 0.0)
             return Local(iteration, b, zeta, 0.0, a, c, -dk2 * moves, 2.0 * ndxe * moves, inverse, -db * inverse)
         if r1 > 0.0:
             low = kappa

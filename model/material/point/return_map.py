@@ -6,6 +6,7 @@ points; `groups`, what is common to all laws of many points; this one.
 
 import numpy as np
 
+from coilset.model.material.law.functions import HELD
 from coilset.model.material.point.groups import (
     BACK,
     DIAGONAL,
@@ -86,7 +87,7 @@ def flow_points(
         count[of.first : first] = 0
         if flow == 0:
             continue
-        _begin(of, components, whole, w)
+        _begin(p, of, components, whole, w)
         solve_rows(p, of, modulus(of, len(components), 0), flow, whole, w)
         _end(of, components, whole, w)
         if with_tangent:
@@ -101,15 +102,15 @@ def flow_points(
 
 
 @njit(**INLINE)
-def _begin(of: Points, components: Components, size: int, w: np.ndarray) -> None:
+def _begin(p: np.ndarray, of: Points, components: Components, size: int, w: np.ndarray) -> None:
     """Where the plastic part of the increment begins: β and n₀ there (n₀ + β e), and the Start."""
-    n, ca, cc = len(components), modulus(of, len(components), 0), 2.0 * of.G
+    n, ca, cc, moves = len(components), modulus(of, len(components), 0), 2.0 * of.G, p[HELD] == 0.0
     for k in range(size):
         na, ea, nn, ne, ee = products(components, w, k)
         along, square = 1.5 * na * ea + ne, 1.5 * ea * ea + ee
         beta = yield_crossing(1.5 * na * na + nn, along, square, w[K2, k])
         rest, steep = 1.0 - beta, along + beta * square
-        w[BETA, k], w[SLOPE, k] = beta, 1.0 / steep if (beta > 0.0) & (steep > 0.0) else 0.0
+        w[BETA, k], w[SLOPE, k] = beta, 1.0 / steep if moves & (beta > 0.0) & (steep > 0.0) else 0.0
         nn, ne = nn + beta * (2.0 * ne + beta * ee), ne + beta * ee
         keep_start(Start(w[WORK, k], ca, na + beta * ea, rest * ea, cc, nn, rest * ne, rest * rest * ee), w, k)
         for j in range(n):
