@@ -71,7 +71,9 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         *_greatest(s),
         Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
         *_tension(s),
-        Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
+        Number(
+            "initial rate", _within(s["rate_N_per_mm"], s.get("estimated_rate_error_N_per_mm"), "N/mm", 3), _after(s)
+        ),
         *([] if is_pulled(s) else [Number("block height", with_unit(s["block_height_mm"], "mm", 2))]),
     ]
 

@@ -296,7 +296,7 @@ def _pressed(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     last = "free length after the last release" if len(summary["releases"]) > 1 else "free length after"
     yield last, within(summary["free_length_after_mm"], of_set, "mm", 4)
     yield "[bold]set[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]"
-    yield "initial rate", quantity(summary["rate_N_per_mm"], "N/mm")
+    yield "initial rate", within(summary["rate_N_per_mm"], summary["estimated_rate_error_N_per_mm"], "N/mm", 4)
     if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
         finished = summary["rate_30_70_after_N_per_mm"]
         name = "rate at 30 to 70 % of the travel" if finished is None else "rate of the finished spring, 30 to 70 %"

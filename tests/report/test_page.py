@@ -78,6 +78,7 @@ def test_numbers_are_those_of_the_summary(folder, page):
         "rate_N_per_mm": 5.6789,
         "block_height_mm": 6.789,
         "rate_30_70_after_N_per_mm": 7.8912,
+        "estimated_rate_error_N_per_mm": 0.0456,
         "estimated_force_error_N": 0.089123,
         "estimated_set_error_mm": 0.0123,
         "estimated_residual_shear_inside_error_MPa": 0.267,
@@ -90,7 +91,7 @@ def test_numbers_are_those_of_the_summary(folder, page):
         "−45.7 ± 0.3 MPa",
         "345.7 ± 0.1 N",
         "321 MPa",
-        "5.679 N/mm",
+        "5.68 ± 0.05 N/mm",
         "6.79 mm",
     ]
     told = [

@@ -57,6 +57,16 @@ def test_the_meshs_error_covers_the_difference_to_a_fine_one(clamped, example):
         assert abs(fine[value] - summary[value]) < mesh[name] < 8.0 * abs(fine[value] - summary[value])
 
 
+def test_the_initial_rate_has_the_meshs_error(example):
+    """Of a spring with closed ends, where the first contacts move with the mesh; unknown without estimates."""
+    ends = "spring.end_coils=closed", "spring.turns=4.5"
+    _, summary = analysed(example, *ends, "mesh.elements_per_turn=16", "accuracy=50 %")
+    _, fine = analysed(example, *ends, "mesh.elements_per_turn=64", estimates=False)
+    error = summary["estimated_rate_error_N_per_mm"]
+    assert 0.0 < abs(fine["rate_N_per_mm"] - summary["rate_N_per_mm"]) < error < 0.02 * summary["rate_N_per_mm"]
+    assert fine["estimated_rate_error_N_per_mm"] is None
+
+
 def test_the_sections_error_is_that_of_a_finer_rule(clamped, example):
     _, summary = clamped
     finer = ("mesh.section.radial=12", "mesh.section.angular=48")

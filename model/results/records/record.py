@@ -509,7 +509,8 @@ class Result:
         steps: converged Steps.
         seats, frames: SeatReactions and Frames of the wire after each of them; empty if only the steps are recorded.
         snapshots: Snapshots at the start and after each phase.
-        rate: initial rate, N/mm; NaN where no equilibrium was found for it.
+        rate: initial rate, N/mm; NaN where no equilibrium was found for it. rate_error: estimated size of its error by
+            the mesh, N/mm; None where it is not known.
         warnings: Warnings of moments that its other records do not show.
         mode: BucklingMode of a spring that is slender enough to buckle; else None.
         errors: RunErrors of a complete run; None where they are not estimated.
@@ -521,6 +522,7 @@ class Result:
     frames: tuple[Frame, ...] = field(default=(), repr=False)
     snapshots: tuple[Snapshot, ...] = field(default=(), repr=False)
     rate: float = float("nan")
+    rate_error: float | None = None
     complete: bool = False
     warnings: tuple[Warning, ...] = ()
     mode: BucklingMode | None = field(default=None, repr=False)

@@ -129,6 +129,7 @@ def estimated_errors(setup: Setup, result: Result) -> dict[str, Any]:
     errors = None if is_turned(setup, result.steps) else result.errors
     total = Errors(None, None, None) if errors is None else errors.total
     return {
+        "estimated_rate_error_N_per_mm": None if errors is None else result.rate_error,
         "estimated_force_error_N": total.force_N,
         "estimated_set_error_mm": total.set_mm,
         "estimated_residual_shear_inside_error_MPa": total.residual_shear_inside_MPa,

@@ -141,6 +141,9 @@ class Summary:
     plastic_work_known_to_N_per_mm2: float = entry(
         "N/mm²", "limit up to which the constants of the material are valid", in_slice=True
     )
+    estimated_rate_error_N_per_mm: float | None = entry(
+        "N/mm", "estimated size of the error of the initial rate, by the mesh; `null` where it is not known"
+    )
     estimated_force_error_N: float | None = entry(
         "N",
         "estimated size of the error of the maximum force by steps, mesh, section rule, contact and warping together; "
