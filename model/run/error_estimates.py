@@ -93,9 +93,9 @@ def estimated(analysis: LoadHistory) -> Result:
     judged = _judged(analysis, companion, watch.seen, surfaces) if comm.rank == 0 else None
     steps, errors = comm.bcast(judged)
     working = result.working and result.working.with_errors(others)
-    error = RATE * abs(result.rate - companion.result.rate)
-    known = math.isfinite(error)
-    return replace(result, steps=steps, errors=errors, working=working, rate_error=error if known else None)
+    of_rate = RATE * abs(result.rate - companion.result.rate)
+    rate_error = of_rate if math.isfinite(of_rate) else None
+    return replace(result, steps=steps, errors=errors, working=working, rate_error=rate_error)
 
 
 def without_errors(result: Result) -> Result:
