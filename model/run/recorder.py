@@ -9,7 +9,6 @@ import numpy as np
 
 from coilset.model.base.agreement import max_of_ranks
 from coilset.model.base.warning import Warning
-from coilset.model.body.state import Where
 from coilset.model.case.phases import AnyPhase, TimePhase
 from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.path.program import StepTaken
@@ -27,7 +26,7 @@ from coilset.model.results.records.record import (
     Step,
     Working,
 )
-from coilset.model.results.records.seat_reactions import faint_force, mean_torque, seat_reactions
+from coilset.model.results.records.seat_reactions import faint_force, seat_reactions
 from coilset.model.results.records.shape import LeastRise, clearance
 from coilset.model.results.records.warnings import step_warnings
 from coilset.model.rod.rod import Rod
@@ -53,8 +52,6 @@ class Recorder:
     ) -> None:
         self.setup, self.rod, self.system, self.control = setup, rod, system, control
         self.layout, self._stability, self._detailed = system.line, stability, detailed
-        self.torque = system.state.add("torque", mean_torque(rod), Where.ELEMENT)
-        self.torque_force = system.state.add("torque_force", np.zeros(1), Where.SHARED)
         self.result, self._least_rise = Result(), LeastRise(setup.turns, setup.spring)
         self._warned: set[str] | None = None  # names of the steps' warnings so far; None until they are requested
 
@@ -164,16 +161,9 @@ class Recorder:
         return Frame(x, self.rod.line.in_order(mean.astype(np.float32)))
 
     def seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
-        """The seats' reactions at the last equilibrium; keeps its torque and force for the next step's active turns."""
-        before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
-        force, torque = now = self.control.force, mean_torque(self.rod)
-        setup = self.setup
-        reactions = seat_reactions(
-            self.system, self.control, setup.turns, step, greatest_force, before, now, setup.force_line
-        )
-        self.torque.trial[:] = self.torque.equilibrium[:] = torque
-        self.torque_force.trial[0] = self.torque_force.equilibrium[0] = force
-        return reactions
+        """The seats' reactions at the last equilibrium."""
+        turns, line = self.setup.turns, self.setup.force_line
+        return seat_reactions(self.system, self.control, turns, step, greatest_force, line)
 
     def _greatest_plastic_work(self) -> float:
         """Maximum b* on the wire's surface at the last equilibrium, N/mm²; collective."""

@@ -126,6 +126,26 @@ def test_active_turns_make_the_rate():
     assert result.seats[0].free_turns == pytest.approx(12.0, abs=1e-12)
 
 
+SOFT = {"wire_diameter": 3.0, "mean_diameter": 24.0, "turns": 3.5, "pitch": 7.0}
+
+
+@pytest.mark.parametrize(("spring", "ends", "heights"), [(SOFT, "clamped", (20, 18)), (CLOSED, "seats", (40, 30))])
+def test_active_turns_are_the_integral_over_the_state(spring, ends, heights):
+    """∫ (Mt/(F r))² dt of the recorded resultants, the same down and up; of changes on release it was 10 % less."""
+    loading = [{"to": {"height": height}, "steps": 3} for height in (*heights, heights[0])]
+    analysis = Analysis(
+        check({"spring": spring, "material": "elastic", "ends": ends, "loading": loading}), MPI.COMM_SELF
+    )
+    result = analysis.run()
+    down, _, up = (result.seats[k].active_turns for k in (2, 5, 8))
+    assert up == pytest.approx(down, rel=1e-6)
+    for shot, reactions in zip(result.snapshots[1:], result.seats[2::3], strict=True):
+        middle = 0.5 * (shot.x[1:] + shot.x[:-1])
+        torque = shot.resultants[:, :, 3].mean(axis=1)
+        shares = (torque / (shot.force * np.hypot(middle[:, 0], middle[:, 1]))) ** 2
+        assert reactions.active_turns == pytest.approx(float(shares @ np.diff(analysis.setup.turns)), rel=1e-6)
+
+
 @pytest.mark.mpi
 def test_ranks_see_the_same_resultants(example):
     seats = "{hold: groove, top: {tilt: free, sideways: 50.0}, bottom: {turn: free}}"

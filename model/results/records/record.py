@@ -181,8 +181,8 @@ class SeatReactions:
     Attributes:
         step: number of the step.
         active_turns: turns that carry the load, ∫ (Mt/(F r))² dt: the number of turns under the torque F r throughout
-            that would hold as much torsional energy, as in R = G d⁴/(64 r³ n). On release, and up to the maximum force
-            so far, of the step's changes of Mt and F: a spring that has set keeps a torque without any force.
+            that would hold as much torsional energy, as in R = G d⁴/(64 r³ n). Mt, F and r are those of the state; not
+            a number without a force.
         free_turns: turns of wire that touch neither seat nor coil.
         side_force_N: force of the top head on the spring across the axis.
         line_lower_x_mm, line_lower_y_mm, line_upper_x_mm, line_upper_y_mm: where the force line, the line of action of

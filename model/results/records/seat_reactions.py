@@ -33,8 +33,6 @@ def seat_reactions(
     turns: np.ndarray,
     step: int,
     greatest_force: float,
-    before: tuple[float, np.ndarray],
-    now: tuple[float, np.ndarray],
     line: ForceLine | None = None,
 ) -> SeatReactions:
     """Reactions at the equilibrium just reached; collective.
@@ -45,8 +43,6 @@ def seat_reactions(
         turns: of the stations, shape (n + 1,).
         step: number of the step.
         greatest_force: magnitude of the largest axial force so far, this one's included, N.
-        before: axial force, N, and `mean_torque` of the last equilibrium but this.
-        now: those of this one.
         line: ForceLine, if it is requested.
 
     Returns:
@@ -57,10 +53,7 @@ def seat_reactions(
     faint = faint_force(rod, greatest_force)
     wrenches = {end: observer.wrench(end) for end in ENDS}
     bottom, top = (observer.reaction(end, wrenches[end], faint) for end in ENDS)
-    force, torque = change = now
-    if abs(force) < greatest_force:  # it has borne more: only what has changed since counts
-        change = force - before[0], torque - before[1]
-    active = active_turns(rod, turns, *change) if min(abs(force), abs(change[0])) > faint else np.nan
+    active = active_turns(rod, turns, control.force) if abs(control.force) > faint else np.nan
     side = math.hypot(top.lateral_x_N, top.lateral_y_N)
     free = free_turns(observer.on_wire, pressure)
     whole = observer.others() + wrenches["bottom"] + wrenches["top"]
@@ -187,19 +180,17 @@ class _Observer:
         return math.atan2(math.hypot(R[0, 2], R[1, 2]), R[2, 2]), x, y, *(math.degrees(angle) for angle in rotation)
 
 
-def mean_torque(rod: Rod) -> np.ndarray:
-    """Mt of the owned elements, the mean over each, N mm."""
-    return rod.coefficients.s[:, :, 3] @ np.array(rod.element.weights)
+def active_turns(rod: Rod, turns: np.ndarray, force: float) -> float:
+    """∫ (Mt/(F r))² dt over all turns, Mt the mean torque of each element, r the distance of its middle; collective.
 
-
-def active_turns(rod: Rod, turns: np.ndarray, force: float, torque: np.ndarray) -> float:
-    """∫ (ΔMt/(ΔF r))² dt over all turns, Mt the torque, r the distance of each element from the axis; collective.
+    The middle of the chord, since a straight element bears F at that lever.
 
     Args:
         rod: Rod.
         turns: of the stations, shape (n + 1,).
-        force, torque: ΔF, change of the axial force, N, and that of `mean_torque`.
+        force: axial force F, N.
     """
+    torque = rod.coefficients.s[:, :, 3] @ np.array(rod.element.weights)
     return sum_of_ranks(rod.comm, _active_turns(torque, force, rod.x, rod.cells, turns, rod.line.element))
 
 
