@@ -6,7 +6,7 @@ from typing import Any
 
 from coilset.model.figures.panels.panel import with_unit
 from coilset.model.results.files.opened import Run, is_turned
-from coilset.model.results.records.labels import largest_errors, lives_text, within
+from coilset.model.results.records.labels import largest_errors, last_released, lives_text, within
 from coilset.model.results.records.units import quantity
 
 
@@ -50,6 +50,8 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         if s["set_mm"] is not None
         else "the spring was not released"
     )
+    if earlier := last_released(s):
+        share += f", at the last release, in step {earlier[0]} of {earlier[1]}"
     inside = s["residual_shear_inside_MPa"]
     turn = s.get("residual_shear_inside_turn")
     at = "" if turn is None else f" at turn {turn:.2f}"
@@ -146,7 +148,8 @@ def _lengths(summary: Mapping[str, Any]) -> str:
     """The free length before, and after the releases before the last one."""
     earlier = [f"{length:.3f} mm after release {k}" for k, length in enumerate(release_lengths(summary)[:-1], 1)]
     between = f", {', '.join(earlier)}" if earlier else ""
-    return f"after; {summary['free_length_before_mm']:.3f} mm before{between}"
+    after = "after the last release" if last_released(summary) else "after"
+    return f"{after}; {summary['free_length_before_mm']:.3f} mm before{between}"
 
 
 def _within(value: float | None, error: float | None, unit: str, digits: int) -> str:

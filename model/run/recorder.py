@@ -172,12 +172,13 @@ class Recorder:
 
     def _load_loss(self, phase: int, force: float, loading: Sequence[AnyPhase]) -> float | None:
         """Percentage of the force lost since time began to pass at constant height; None if it does not."""
-        first = phase
-        while first >= 0 and isinstance(one := loading[first], TimePhase) and one.duration.keep == "height":
-            first -= 1
-        if first == phase:
+
+        def stays(number: int) -> bool:
+            return isinstance(one := loading[number], TimePhase) and one.duration.keep == "height"
+
+        if not stays(phase):
             return None
-        before = next((step.force_N for step in reversed(self.result.steps) if step.phase <= first), 0.0)
+        before = next((step.force_N for step in reversed(self.result.steps) if not stays(step.phase)), 0.0)
         if abs(before) <= faint_force(self.rod, self.result.greatest_force):
             return None
         return 100.0 * (1.0 - force / before)

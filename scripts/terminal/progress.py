@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
-from coilset.model.results.records.labels import largest_errors, lives_text, within
+from coilset.model.results.records.labels import largest_errors, last_released, lives_text, lost, within
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.results.records.units import quantity as name_and_unit
 from coilset.model.run.analysis import Analysis
@@ -90,7 +90,7 @@ class Lines:
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """Print the results."""
-        rows = _pressed(summary) if summary["turn_max_deg"] is None else _turned(summary)
+        rows = pressed_rows(summary) if summary["turn_max_deg"] is None else _turned(summary)
         self.console.pairs(rows)
         if summary["working"]:
             self.console.print(working_table(summary["working"]))
@@ -282,7 +282,7 @@ def _beyond_coil(summary: Mapping[str, Any], name: str) -> Iterator[tuple[str, s
         yield "  there after the release", quantity(summary["residual_tail_stress_MPa"], "MPa", 1)
 
 
-def _pressed(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Rows of a spring that is compressed or pulled."""
     of_set = summary["estimated_set_error_mm"]
     if summary["initial_tension_N"] is not None:
@@ -293,9 +293,11 @@ def _pressed(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "free length before", quantity(summary["free_length_before_mm"], "mm")
     for number, release in enumerate(summary["releases"][:-1], 1):
         yield f"free length after release {number}", quantity(release["free_length_mm"], "mm")
-    last = "free length after the last release" if len(summary["releases"]) > 1 else "free length after"
+    earlier = last_released(summary)
+    last = "free length after the last release" if earlier or len(summary["releases"]) > 1 else "free length after"
     yield last, within(summary["free_length_after_mm"], of_set, "mm", 4)
-    yield "[bold]set[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]"
+    at = f", release in step {earlier[0]} of {earlier[1]}" if earlier else ""
+    yield f"[bold]set{at}[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]"
     yield "initial rate", within(summary["rate_N_per_mm"], summary["estimated_rate_error_N_per_mm"], "N/mm", 4)
     if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
         finished = summary["rate_30_70_after_N_per_mm"]
@@ -309,8 +311,8 @@ def _pressed(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "height under it", within(summary["force_max_height_mm"], error, "mm", 4)
     else:
         yield "maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2)
-    if summary["load_loss_percent"] is not None:
-        yield "load lost in time", quantity(summary["load_loss_percent"], "%", 2)
+    for stay in summary["load_losses"]:
+        yield f"load lost in time at {stay['height_mm']:.5g} mm", lost(stay)
     yield "block height", quantity(summary["block_height_mm"], "mm")
     yield "maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2)
     error, turn = summary["estimated_residual_shear_inside_error_MPa"], summary["residual_shear_inside_turn"]

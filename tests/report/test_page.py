@@ -96,7 +96,7 @@ def test_numbers_are_those_of_the_summary(folder, page):
     ]
     told = [
         "5.0 % of the free length",
-        "after; 24.691 mm before",
+        "after the last release; 24.691 mm before",
         "7.891 N/mm on release",
         "largest part of the errors ±: ",
         "Compressed with up to 345.7 N, the spring sets 1.235 mm",

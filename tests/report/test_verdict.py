@@ -59,7 +59,8 @@ def test_the_free_length_after_each_release_is_given():
     )
     summary = GOOD | numbers | {"free_length_before_mm": 50.0, "free_length_after_mm": 45.0}
     assert ("free length after release", "45.00 mm") in results(summary)
-    twice = summary | {"releases": [{"free_length_mm": 46.5}, {"free_length_mm": 45.0}]}
+    releases = [{"free_length_mm": 46.5, "step": 4}, {"free_length_mm": 45.0, "step": 8}]
+    twice = summary | {"releases": releases, "steps": 8}
     assert ("free length after release 1", "46.50 mm") in results(twice)
     assert ("free length after release 2", "45.00 mm") in results(twice)
     card = next(one for one in answer(twice) if one.term == "free length")

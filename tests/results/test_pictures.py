@@ -262,7 +262,10 @@ def test_all_figures_share_one_look():
         ({"set_mm": 1.25}, "the spring sets 1.25 mm"),
         ({"set_mm": -1e-13}, "the spring sets 0 mm"),
         ({"set_mm": -0.177, "force_max_N": -9.0}, "the spring stays 0.177 mm longer"),
-        ({"set_mm": None, "load_loss_percent": 17.05}, "the spring loses 17.05 % of its load"),
+        (
+            {"set_mm": None, "load_losses": [{"loss_percent": 17.05, "height_mm": 30.12}]},
+            "the spring loses 17.05 % of its load at 30.12 mm",
+        ),
     ],
 )
 def test_a_characteristic_names_what_becomes_of_the_spring(analysis, summary, said):

@@ -10,9 +10,15 @@ from mpi4py import MPI
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.case.case import check
+from coilset.model.figures.panels.characteristic import characteristic
 from coilset.model.material import library
+from coilset.model.report.answer import answer
+from coilset.model.results.records.labels import last_released
+from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import run_of
 from coilset.model.run.analysis import Analysis
+from coilset.scripts.terminal.progress import pressed_rows
 
 HOLD = [{"to": {"travel": 10}, "steps": 1}, {"hold": {"hours": 1000}, "steps": 8}]
 SPRING = {
@@ -85,6 +91,45 @@ def test_heat_and_back(slow):
     assert [step.temperature_K for step in steps] == pytest.approx([293.15, 433.15, 573.15, 293.15])
     assert [step.hours for step in steps] == pytest.approx([0.0, 0.25, 0.5, 2.0])
     assert [step.load_loss_percent for step in steps[1:]] == pytest.approx([5.0, 10.0, 0.0], abs=1e-6)
+
+
+def test_each_time_at_a_height_is_listed_with_what_it_lost():
+    """The last one, at another height, said nothing of what was lost before it."""
+    heat, cool = ({"heat": {"to": kelvin, "minutes": 20}, "steps": 2} for kelvin in (373.15, 293.15))
+    hold, deeper = {"hold": {"hours": 1000}, "steps": 4}, {"to": {"travel": 14}, "steps": 2}
+    stay = [{"to": {"travel": 10}, "steps": 1}, heat, hold]
+    analysis = analysis_of([*stay, deeper, cool], temperature=293.15)
+    result = analysis.run()
+    summary = summarise(analysis.setup, result)
+    first, last = summary["load_losses"]
+    steps = result.steps
+    assert (first["step"], last["step"]) == (7, 11)
+    assert first["height_mm"] - last["height_mm"] == pytest.approx(4.0)
+    assert first["hours"] == pytest.approx(1000 + 1 / 3)
+    for one, before in ((first, steps[0]), (last, steps[8])):
+        after = steps[one["step"] - 1]
+        assert one["loss_percent"] == pytest.approx(100 * (1 - after.force_N / before.force_N), rel=1e-12)
+        assert (one["force_before_N"], one["force_after_N"]) == (before.force_N, after.force_N)
+    assert summary["load_loss_percent"] == last["loss_percent"] < 0.0 < first["loss_percent"]
+    rows = dict(pressed_rows(summary))
+    assert sum(name.startswith("load lost in time at") for name in rows) == 2
+    assert rows["load lost in time at 16 mm"].endswith(" in 0.3333 h, from 373 to 293 K")
+    assert "loses" not in characteristic(run_of(analysis.setup, analysis.result, origin(analysis.case))).title
+
+
+def test_a_set_before_the_time_under_load_is_called_so():
+    """The run ends loaded: what it lost since its last release is not in its set."""
+    loading = [{"to": {"travel": 10}, "steps": 1}, {"to": {"force": 0}, "steps": 1}, *HOLD]
+    analysis = analysis_of(loading)
+    summary = summarise(analysis.setup, analysis.run())
+    assert last_released(summary) == (2, 11)
+    assert (
+        " by its last release and then loses "
+        in characteristic(run_of(analysis.setup, analysis.result, origin(analysis.case))).title
+    )
+    assert "set, release in step 2 of 11" in str(list(pressed_rows(summary)))
+    assert answer(summary)[0].remark.endswith("at the last release, in step 2 of 11")
+    assert last_released(summary | {"steps": 2}) is None
 
 
 def test_constant_force():

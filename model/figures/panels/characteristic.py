@@ -9,7 +9,7 @@ import numpy.typing as npt
 from coilset.model.figures.panels.panel import COLOURS, GREY, Panel, axis, curve, upright
 from coilset.model.figures.panels.phases import Phase, phases, unnamed
 from coilset.model.results.files.opened import Run
-from coilset.model.results.records.labels import plain
+from coilset.model.results.records.labels import last_released, plain
 from coilset.model.results.records.working import number_name
 
 HEIGHT = 440  # pixels, the same for both, which stand side by side
@@ -193,14 +193,22 @@ def compressed(force: float) -> str:
 
 def _outcome(summary: Mapping[str, Any]) -> str:
     """The set, or the load that was lost; empty if the spring was not released."""
-    set_mm, lost = summary["set_mm"], summary.get("load_loss_percent")
+    set_mm, stays, released = summary["set_mm"], summary.get("load_losses") or [], last_released(summary)
     before, after = (summary.get(name) for name in ("initial_tension_N", "initial_tension_after_N"))
     if before and after:
         return f", the initial tension falls from {plain(before)} to {plain(after)} N"
     if set_mm is None:
-        return "" if lost is None else f", the spring loses {plain(lost)} % of its load"
+        return f", the spring loses {_lost(stays)}" if len(stays) == 1 else ""
     text = plain(set_mm)
-    return f", the spring stays {text[1:]} mm longer" if text.startswith("-") else f", the spring sets {text} mm"
+    left = f", the spring stays {text[1:]} mm longer" if text.startswith("-") else f", the spring sets {text} mm"
+    if released is None:
+        return left
+    later = [one for one in stays if one["step"] > released[0]]
+    return f"{left} by its last release{f' and then loses {_lost(later)}' if len(later) == 1 else ''}"
+
+
+def _lost(stays: Sequence[Mapping[str, Any]]) -> str:
+    return f"{plain(stays[0]['loss_percent'])} % of its load at {stays[0]['height_mm']:.4g} mm"
 
 
 def _arrow(set_mm: float, block: float) -> list[dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 MOST_DECIMALS = 6
 
@@ -57,6 +58,24 @@ CAUSES = {
     "warping": "elastic warping",
 }
 """Causes of these errors, in words."""
+
+
+def last_released(summary: Mapping[str, Any]) -> tuple[int, int] | None:
+    """Step of the last release and number of all steps, where the run does not end with it; of summary.json.
+
+    The set is that of this release: what follows, as time under load, is not in it.
+    """
+    releases = summary.get("releases")
+    if not releases or releases[-1]["step"] == summary["steps"]:
+        return None
+    return releases[-1]["step"], summary["steps"]
+
+
+def lost(stay: Mapping[str, Any]) -> str:
+    """What a spring lost of its force during a time at constant height, an entry of `load_losses`."""
+    before, after = (stay[f"temperature_{when}_K"] for when in ("before", "after"))
+    heat = "" if abs(after - before) < 0.5 else f", from {before:.0f} to {after:.0f} K"
+    return f"{stay['loss_percent']:z.2f} % of {stay['force_before_N']:.5g} N in {stay['hours']:.4g} h{heat}"
 
 
 def largest_errors(errors: Mapping[str, Mapping[str, float | None]] | None) -> str:

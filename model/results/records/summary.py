@@ -1,6 +1,7 @@
 """The summary of a run."""
 
 from dataclasses import asdict
+from itertools import pairwise
 from math import isfinite
 from typing import Any
 
@@ -11,7 +12,7 @@ from coilset.model.results.fatigue import fatigue
 from coilset.model.results.limits import judged, limit_warnings
 from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates, tension, turning
-from coilset.model.results.records.record import Errors, Result, Setup, Snapshot, WorkingState
+from coilset.model.results.records.record import Errors, Result, Setup, Snapshot, Step, WorkingState
 from coilset.model.results.records.releases import Release, is_turned, releases
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
@@ -49,6 +50,7 @@ def summary(setup: Setup, result: Result) -> Summary:
     release, top = freed[-1] if freed else None, result.top
     shot = release.snapshot if release else None
     inside, inside_turn = shear_inside(setup, shot) if shot else (None, None)
+    losses = load_losses(result)
     axis, buckled = setup.spring.measured_axis, buckling(result.steps, setup.mean_diameter)
     return Summary(
         complete=result.complete,
@@ -83,7 +85,8 @@ def summary(setup: Setup, result: Result) -> Summary:
         working_set_mm=result.working.set if result.working else None,
         fatigue=fatigue(setup, result),
         limits=(),
-        load_loss_percent=load_loss(result),
+        load_loss_percent=losses[-1]["loss_percent"] if losses else None,
+        load_losses=losses,
         coiling_diameter_mm=setup.coiling_diameter,
         measured_axis_offset_mm=axis.offset if axis else None,
         measured_axis_tilt_deg=axis.tilt if axis else None,
@@ -106,10 +109,28 @@ def summary(setup: Setup, result: Result) -> Summary:
     )
 
 
-def load_loss(result: Result) -> float | None:
-    """Percentage of the force that the spring had lost when time last passed at constant height."""
-    losses = [step.load_loss_percent for step in result.steps if step.load_loss_percent is not None]
-    return losses[-1] if losses else None
+def load_losses(result: Result) -> tuple[dict[str, Any], ...]:
+    """What the spring had lost of its force at the end of each time at constant height."""
+    found: list[dict[str, Any]] = []
+    before: Step | None = None
+    for last, step in pairwise(result.steps):
+        if step.load_loss_percent is None:
+            before = None
+            continue
+        if before is None:
+            before = last
+            found.append({})
+        found[-1] = {
+            "height_mm": step.seat_height_mm,
+            "step": step.number,
+            "hours": step.hours - before.hours,
+            "temperature_before_K": before.temperature_K,
+            "temperature_after_K": step.temperature_K,
+            "force_before_N": before.force_N,
+            "force_after_N": step.force_N,
+            "loss_percent": step.load_loss_percent,
+        }
+    return tuple(found)
 
 
 def _release(release: Release) -> dict[str, Any]:

@@ -182,8 +182,14 @@ class Summary:
     )
     load_loss_percent: float | None = entry(
         "%",
-        "part of its force that the spring had lost when time last passed at constant height; `null` if none did",
+        "part of its force that the spring had lost when time last passed at constant height, of the force with which "
+        "it came to that height; `null` if none did",
         in_slice=True,
+    )
+    load_losses: tuple[dict[str, Any], ...] = entry(
+        "",
+        "for each time at constant height, the last one as in `load_loss_percent`: `height_mm`, last `step`, `hours`, "
+        "`temperature_before_K` and `temperature_after_K`, `force_before_N` and `force_after_N`, `loss_percent`",
     )
     coiling_diameter_mm: float | None = entry(
         "mm",
