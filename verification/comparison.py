@@ -32,6 +32,7 @@ from coilset.model.nest.output import write
 from coilset.model.results.diffraction import DIRECTIONS
 from coilset.model.results.records.summary_entries import NUMBERS
 
+ROUNDING = 1e-6  # of a measured number or its error, below which a computed one is 0
 DRAWN = 121  # points of a phase's characteristic
 CASE, NEST, MEASURED, COLUMNS = "case.yaml", "nest.yaml", "measured.csv", "quantity, value, error"
 FORCE, STRESSES = "force_N", {f"stress_{name}_MPa": name for name in DIRECTIONS}
@@ -69,8 +70,15 @@ class Compared:
 
     @property
     def ratio(self) -> float:
-        """Measured over computed."""
-        return self.measured / self.computed if self.computed else float("nan")
+        """Measured over computed; NaN where one of them is 0 within its error."""
+        known = 0.0 if np.isnan(self.computed_error) else self.computed_error
+        if abs(self.measured) <= self.error or abs(self.computed) <= known or not self.shown(self.computed):
+            return float("nan")
+        return self.measured / self.computed
+
+    def shown(self, value: float) -> float:
+        """A computed number, 0 where it is rounding beside what is measured."""
+        return 0.0 if abs(value) < ROUNDING * max(abs(self.measured), self.error) else value
 
 
 @dataclass(frozen=True)
@@ -248,13 +256,18 @@ def figure(found: Comparison, name: str) -> Figure:
 
 def _draw_ratios(axes: Axes, rows: list[Compared], name: str) -> None:
     for k, row in enumerate(rows):
-        size = abs(row.computed) or float("nan")
+        if np.isnan(row.ratio):
+            verdict = "met" if row.met else "not met"
+            words, across = f"0 within its error: no ratio, {verdict}", axes.get_yaxis_transform()
+            axes.text(0.01, k, words, transform=across, va="center", backgroundcolor="white")
+            continue
+        size = abs(row.computed)
         if not np.isnan(row.computed_error):
             axes.barh(k, 2.0 * row.computed_error / size, 0.7, 1.0 - row.computed_error / size, color="0.85")
         axes.errorbar(row.ratio, k, xerr=row.error / size, fmt="o", ms=4, color="C0" if row.met else "C3")
     axes.axvline(1.0, color="k", lw=0.8)
     axes.set_yticks(range(len(rows)), [row.quantity for row in rows])
-    axes.invert_yaxis()
+    axes.set_ylim(len(rows) - 0.5, -0.5)
     met = sum(row.met for row in rows)
     axes.set(xlabel="measured over computed", title=f"{name}: {met} of {len(rows)} numbers met")
     axes.grid(lw=0.3, axis="x")

@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from coilset.model.base.errors import InputError
-from coilset.verification.comparison import Compared, compare, figure
+from coilset.verification.comparison import Compared, Comparison, compare, figure
 
 CASE = {
     "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
@@ -23,6 +23,29 @@ def test_met_within_both_errors():
     assert Compared("set", 1.0, 0.05, 1.08, 0.04).met
     assert not Compared("set", 1.0, 0.05, 1.08, 0.02).met
     assert not Compared("set", 1.0, 0.05, 1.08, float("nan")).met
+
+
+@pytest.mark.parametrize(
+    ("measured", "error", "computed", "known", "shown", "ratio"),
+    [
+        (0.02, 0.05, -1.0658e-14, 1.4e-13, 0.0, None),
+        (0.2, 0.05, -1.0658e-14, float("nan"), 0.0, None),
+        (0.2, 0.05, 0.01, 0.02, 0.01, None),
+        (0.01, 0.05, 0.2, 0.01, 0.2, None),
+        (0.2, 0.05, 0.1, 0.02, 0.1, 2.0),
+    ],
+)
+def test_a_number_that_is_0_has_no_ratio(measured, error, computed, known, shown, ratio):
+    """An elastic spring's set is rounding; divided by it, others left the picture's axis from -6e12 to 2e12."""
+    row = Compared("set_mm", measured, error, computed, known)
+    assert row.shown(computed) == shown
+    assert row.ratio == pytest.approx(float("nan") if ratio is None else ratio, nan_ok=True)
+    drawn = figure(Comparison([row, Compared("force_max_N", 100.0, 1.0, 99.0, 0.5)], [], float("nan")), "spring")
+    low, high = drawn.axes[0].get_xlim()
+    assert -1.0 < low < high < 4.0
+    assert [text.get_text() for text in drawn.axes[0].texts] == (
+        [] if ratio else [f"0 within its error: no ratio, {'met' if row.met else 'not met'}"]
+    )
 
 
 def test_a_folder(tmp_path):

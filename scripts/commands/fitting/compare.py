@@ -1,5 +1,6 @@
 """`coilset compare`: a measured spring beside the run of its case."""
 
+from math import isnan
 from pathlib import Path
 
 from rich.table import Table
@@ -24,8 +25,9 @@ def compare(folder: str, out: str | None, force: bool) -> None:
     rows = found.rows
     table = Table("quantity", "measured", "±", "computed", "±", "ratio", "", box=None, padding=(0, 1))
     for row in rows:
-        error = "–" if row.computed_error != row.computed_error else f"{row.computed_error:.2g}"
-        numbers = (f"{row.measured:.5g}", f"{row.error:.3g}", f"{row.computed:.5g}", error, f"{row.ratio:.4f}")
+        error = "–" if isnan(row.computed_error) else f"{row.shown(row.computed_error):.2g}"
+        ratio = "–" if isnan(row.ratio) else f"{row.ratio:.4f}"
+        numbers = (f"{row.measured:.5g}", f"{row.error:.3g}", f"{row.shown(row.computed):.5g}", error, ratio)
         table.add_row(row.quantity, *numbers, "met" if row.met else "not met")
     console = Console()
     console.print(table)
