@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
+from coilset.model.case.phases import drives_at
+from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.results.records.labels import largest_errors, last_released, lives_text, lost, within
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.results.records.units import quantity as name_and_unit
@@ -22,7 +24,10 @@ from coilset.scripts.terminal.console import Console, table
 if TYPE_CHECKING:  # not where a rod is solved
     from coilset.model.slice.analysis import SliceStep
 
-HEAD = f"{'step':>5}{'height/mm':>10}{'force/N':>12}{'iter.':>6}"  # of `step_row`
+PRESSED = f"{'step':>5}{'height/mm':>10}{'force/N':>12}"
+HEAD = f"{PRESSED}{'iter.':>6}"  # of `step_row`
+TURNED = f"{PRESSED}{'turn/°':>9}{'torque/N mm':>13}{'iter.':>6}"  # of a spring that is turned, too
+TURN = 5  # the freedom of a head about the axis, of SEAT_DOFS
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
 
 
@@ -35,6 +40,7 @@ class Lines:
 
     def __init__(self, talks: bool = True) -> None:
         self.console = Console(quiet=not talks)
+        self._turned = False  # whether the load program turns a head
         self._began, self._from = 0.0, -1.0  # when and where the first step ended; below 0 before
 
     def say(self, text: str) -> None:
@@ -58,13 +64,19 @@ class Lines:
             return
         if resumed:
             self.say(f"continuing after step {analysis.continuation.number}")
-        self.say(f"{HEAD}{'points':>7}  contacts")  # a row fits in 80 columns
+        self._head()
 
     def again(self, analysis: Analysis, finer: str) -> None:
         """A finer run of the same case begins or continues; `finer` names what is finer."""
         self.analysis, self._from = analysis, -1.0
         self.say(f"the estimated error exceeds the accuracy: again with {finer}")
-        self.say(f"{HEAD}{'points':>7}  contacts")
+        self._head()
+
+    def _head(self) -> None:
+        """The head of the steps, whose rows fit in 80 columns."""
+        loading = self.analysis.case.loading
+        self._turned = any(drive.freedom % SEAT_DOFS == TURN for drive in drives_at(loading, len(loading) - 1))
+        self.say(f"{TURNED if self._turned else HEAD}{'points':>7}  contacts")
 
     def step(self, step: Step) -> None:
         """A step has been found."""
@@ -72,8 +84,13 @@ class Lines:
         if step.left_branch:
             cuts += "  [yellow]snapped[/]" if step.released_energy_Nmm else "  [yellow]left its path[/]"
         touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
-        row = f"{step_row(step)}{step.contacts:7d}  {touching}{cuts}{self._left(step)}"
+        row = f"{self._row(step)}{step.contacts:7d}  {touching}{cuts}{self._left(step)}"
         self.console.print(row, soft_wrap=True)
+
+    def _row(self, step: Step) -> str:
+        if not self._turned:
+            return step_row(step)
+        return f"{_pressed(step)}{step.turn_deg:z9.2f}{step.torque_Nmm:z13.1f}{step.iterations:6d}"
 
     def _left(self, step: Step) -> str:
         """Remaining time at the speed since the first step, which may compile; empty if it is short, or unknown."""
@@ -199,7 +216,11 @@ def _done(analysis: Analysis, step: Step | None = None) -> float:
 
 def step_row(step: "Step | SliceStep") -> str:
     """The columns common to the steps of rod and slice, under HEAD."""
-    return f"{step.number:5d}{step.seat_height_mm:10.4f}{step.force_N:z12.3f}{step.iterations:6d}"
+    return f"{_pressed(step)}{step.iterations:6d}"
+
+
+def _pressed(step: "Step | SliceStep") -> str:
+    return f"{step.number:5d}{step.seat_height_mm:10.4f}{step.force_N:z12.3f}"
 
 
 def quantity(value: float | None, unit: str, digits: int = 4) -> str:

@@ -1,10 +1,12 @@
 """Torsion springs: elastic against the formula and the curved beam, plastic against a straight wire bent by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import check
 from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.curve import CentreLine
@@ -14,6 +16,7 @@ from coilset.model.run.analysis import Analysis
 from coilset.model.standards import en13906
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.rows import sections
+from coilset.scripts.terminal.progress import Lines
 from coilset.verification.references.bent_wire import BentWire
 
 WIRE, TURNS, PITCH = 3.0, 5.5, 4.2
@@ -41,6 +44,32 @@ def test_the_elastic_rate_is_that_of_the_formula(turn):
     assert summary["turn_rate_after_Nmm_per_deg"] == pytest.approx(expected, rel=0.01)
     assert summary["turn_max_deg"] == pytest.approx(turn, abs=1e-9)
     assert abs(summary["turn_set_deg"]) < 1e-5 * abs(turn)
+
+
+@pytest.mark.parametrize(
+    ("to", "place", "reachable"),
+    [
+        ({"torque": 1000.0}, r"[\d.]+° and 500 N mm", r"a torque of (500|499.9) N mm"),
+        ({"turn": 20.0}, r"10° and [\d.]+ N mm", r"a rotation of (10|9.999) °"),
+    ],
+)
+def test_a_spring_that_is_turned_in_vain_has_reached_a_torque(monkeypatch, capsys, to, place, reachable):
+    """The message gave the height, and a force of rounding as what can be reached; its steps showed neither."""
+    loading = [{"to": {"force": 0, "top": to}, "steps": 4}]
+    analysis = Analysis(check(data(to) | {"loading": loading}), MPI.COMM_SELF)
+    solve, lines = analysis.newton.solve, Lines()
+
+    def fails_from_half(load, start=None):
+        outcome = solve(load, start)
+        return replace(outcome, converged=False, stagnated=True) if len(analysis.result.steps) == 2 else outcome
+
+    monkeypatch.setattr(analysis.newton, "solve", fails_from_half)
+    lines.begin(analysis, "case.yaml", False)
+    with pytest.raises(SolveError, match=f"^no equilibrium beyond {place} on the way .*; {reachable} can be reached$"):
+        analysis.run(lines.step)
+    last, printed = analysis.result.steps[-1], capsys.readouterr().out.splitlines()
+    assert "turn/°  torque/N mm" in "".join(printed)
+    assert any(f"{last.turn_deg:.2f}" in line and f"{last.torque_Nmm:.1f}" in line for line in printed)
 
 
 @pytest.mark.parametrize("mean", [12.0, 30.0])

@@ -96,6 +96,12 @@ class StepTaken:
     outcome: Outcome
 
 
+_SIDEWAYS, _TILT = (("a displacement", "mm"), ("a side force", "N")), (("a tilt", "°"), ("a tilt moment", "N mm"))
+_TURN = ("a rotation", "°"), ("a torque", "N mm")
+_TARGETS = (_SIDEWAYS, _SIDEWAYS, (("a height", "mm"), ("a force", "N")), _TILT, _TILT, _TURN)
+"""Names and units of what may drive each freedom of a head: its value, or its force."""
+
+
 class Driven(Protocol):
     """What a load program drives: coilset.model.equilibrium.system.heads.Heads, or what takes their place."""
 
@@ -320,21 +326,42 @@ class LoadProgram:
             regular,
             stage.label,
             stage.steps == "auto",
-            lambda: f"{self.control.height:.6g} mm and {self.control.force:.6g} N",
+            self._place,
             lambda: self._reachable(stage),
             None if marks is None else lambda done: regular * part(done),
             self._moments(stage, part) if stage.hours else None,
         )
 
+    def _place(self) -> str:
+        """The last equilibrium in words: height and force, or value and force of another freedom that is driven."""
+        control, measure = self.control, self.control.measure
+        if measure == AXIAL:
+            return f"{control.height:.6g} mm and {control.force:.6g} N"
+        value, force = (
+            values[measure] for values in (control.freedoms("equilibrium"), control.reactions("equilibrium"))
+        )
+        if measure % SEAT_DOFS < SEAT_DOFS // 2:
+            return f"{value:.6g} mm sideways and {force:.6g} N"
+        return f"{math.degrees(value):.4g}° and {force:.6g} N mm"
+
     def _reachable(self, stage: Stage) -> str:
         """The last equilibrium as another target, rounded to four digits towards where the stage began."""
-        by_force, control = stage.kind == "force", self.control
+        by_force, control, measure = stage.kind == "force", self.control, self.control.measure
         begin, value = (self._force, control.force) if by_force else (self._height, control.height)
-        if stage.value is None or value in (0.0, begin):
+        if measure != AXIAL:
+            by_force = any(drive.freedom == measure and drive.kind == "force" for drive in stage.drives)
+            begin = self._heads[measure + (SEATS if by_force else 0)]
+            value = float((control.reactions if by_force else control.freedoms)("equilibrium")[measure])
+            if measure % SEAT_DOFS >= SEAT_DOFS // 2 and not by_force:
+                begin, value = math.degrees(begin), math.degrees(value)
+        elif stage.value is None:
+            return ""
+        if value in (0.0, begin):
             return ""
         scale = 10.0 ** (3 - math.floor(math.log10(abs(value))))
         rounded = (math.ceil if value < begin else math.floor)(scale * value) / scale
-        return f"{'a force' if by_force else 'a height'} of {rounded:.6g} {'N' if by_force else 'mm'} can be reached"
+        words, unit = _TARGETS[measure % SEAT_DOFS][by_force]
+        return f"{words} of {rounded:.6g} {unit} can be reached"
 
     def _load(self, stage: Stage, axial: float, part: float) -> Load:
         """The load to a part of a stage, where the height or force is `axial`."""
