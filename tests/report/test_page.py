@@ -226,7 +226,9 @@ def test_first_and_second_loading_are_distinguished(folder):
     """Phases of one name are numbered; where there is no second loading, the page says how to get it."""
     run = open_run(folder)
     assert [phase.label for phase in phases(run, NAMED)] == ["to block", "to force 0 N"]
-    assert "second loading" in characteristic(run).note
+    assert "second loading, add a phase to the load program, such as “- to: block”" in characteristic(run).note
+    pulled = replace(run, summary=run.summary | {"force_max_N": -306.22})
+    assert "such as “- to: {force: -306.22}”" in characteristic(pulled).note  # `to: block` is refused for hooks
     same = replace(run, data=run.data.assign_coords(snapshot=["start", "block", "block"]))
     assert [phase.label for phase in phases(same, NAMED)] == ["to block, first time", "to block, second time"]
 

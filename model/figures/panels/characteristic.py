@@ -16,7 +16,7 @@ HEIGHT = 440  # pixels, the same for both, which stand side by side
 NAMED = len(COLOURS)  # targets
 BETWEEN = 12  # points drawn from a step to the next
 SHORT = 0.25  # of the travel to block: an arrow of the set that its text would hide
-AGAIN = "For the second loading, add a phase to the load program, such as “- to: block”, and solve again."
+AGAIN = "For the second loading, add a phase to the load program, such as “- to: {}”, and solve again."
 
 
 def characteristic(run: Run) -> Panel:
@@ -61,8 +61,15 @@ def characteristic(run: Run) -> Panel:
         traces,
         {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), **layout},
         height=HEIGHT,
-        note="" if set_mm is None or len(found) > 2 else AGAIN,
+        note="" if set_mm is None or len(found) > 2 else AGAIN.format(_again(run)),
     )
+
+
+def _again(run: Run) -> str:
+    """A target of a second loading; a spring that is pulled, or has hooks or arms, does not go to block."""
+    greatest, spring = run.summary["force_max_N"], run.case["spring"]
+    pressed = greatest >= 0.0 and not (spring.get("hooks") or spring.get("arms"))
+    return "block" if pressed else f"{{force: {greatest:.5g}}}"
 
 
 def torque_curve(run: Run) -> Panel:
