@@ -42,6 +42,19 @@ def test_a_warning_fails_its_check():
     assert checks(warned() | {"complete": False}, True, True)[0].result == "not met"
 
 
+def test_a_mesh_that_is_coarse_for_contact_is_judged_by_the_errors():
+    """It comes with the default mesh of hooks and arms, and made the verdict of every spring with them 'Not met'."""
+    coarse = warned("contact mesh")
+    estimated = coarse | {"estimated_force_error_N": 0.19}
+    assert verdict(checks(estimated, True, True)) == "All checks made are met."
+    made = {one.name: one for one in checks(estimated | {"turn_max_deg": 200.0}, True, True)}
+    assert (made["accuracy"].met, made["other warnings"].met) == (None, True)
+    assert made["accuracy"].reason.endswith("not estimated; about contact mesh")
+    beyond = warned("contact mesh", "error") | {"estimated_force_error_N": 9.0}
+    assert verdict(checks(beyond, True, True)) == "Not met: accuracy."
+    assert verdict(checks(coarse, True, True)) == "Not met: other warnings."
+
+
 def test_the_free_length_after_each_release_is_given():
     """As the summary lists them; without a list only the last one."""
     numbers = dict.fromkeys(
