@@ -11,6 +11,7 @@ from coilset.model.standards.wires.law import poisson_ratio
 
 DERIVED, TWO, ONE, GIVEN = "derived", "two sources", "one source", "given"
 SHORT = {"checked against a second source": TWO, "one source": ONE, "estimate": "estimate"}
+FINISHED = "rate_30_70_after_N_per_mm"  # of the summary
 
 
 @dataclass(frozen=True)
@@ -91,13 +92,20 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     )
 
 
+def _found_rate(sheet: Sheet) -> tuple[float | None, str]:
+    """The rate of a run, N/mm, and which it is: of the finished spring where the run gives it."""
+    finished = sheet.at_run(FINISHED)
+    return (
+        (sheet.at_run("rate_N_per_mm"), "at first touch") if finished is None else (finished, "of the finished spring")
+    )
+
+
 def _rate(sheet: Sheet) -> Row:
     """The rate, beside that of the finished spring where a run gives it."""
-    finished, first = sheet.at_run("rate_30_70_after_N_per_mm"), sheet.at_run("rate_N_per_mm")
-    why = "at first touch, where end turns carry load too; with curvature and direct shear"
-    if finished is not None:
-        why = "of the finished spring, between 30 and 70 % of its travel"
-    found = first if finished is None else finished
+    found, which = _found_rate(sheet)
+    why = f"{which}, where end turns carry load too; with curvature and direct shear"
+    if sheet.at_run(FINISHED) is not None:
+        why = f"{which}, between 30 and 70 % of its travel"
     formula = "4 G J/(π D³ n)" if sheet.spring.wire else "G d⁴/(8 D³ n)"
     return Row("rate R", sheet.rate, "N/mm", formula, DERIVED, found, why)
 
@@ -292,7 +300,7 @@ def _dynamics(sheet: Sheet) -> Iterator[Row]:
         "½ √(R/m) of the active turns, ends held" if s.wire else "d/(2π n D²) √(G/(2ρ)), ends held",
         DERIVED,
         _frequency(sheet),
-        "½ √(R/m) with the rate found and the helix's mass",
+        f"½ √(R/m) with the rate R found {_found_rate(sheet)[1]} and the helix's mass",
     )
     work = sheet.found.work_to(s.solid + AT_BLOCK * s.d) if sheet.found and sheet.was_at_block else None
     yield Row(
@@ -308,7 +316,7 @@ def _dynamics(sheet: Sheet) -> Iterator[Row]:
 
 def _frequency(sheet: Sheet) -> float | None:
     """Of a half wave along the active turns, Hz, with the rate of the run; None without one."""
-    s, rate = sheet.spring, sheet.at_run("rate_N_per_mm")
+    s, (rate, _) = sheet.spring, _found_rate(sheet)
     active = en13906.mass(sheet.elastic.density, s.of_mass, sheet.helix * s.n / s.turns)
     return None if rate is None else 0.5 * sqrt(1e3 * rate / active)  # 1 N/mm = 10³ kg/s²
 

@@ -124,6 +124,12 @@ def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
     assert shown["growth of D to block"].found is None
     # ½ √(R/m), m of 9.5 of 11.5 turns of 1260 mm: 16 N/mm, 7.85e-6 · π 5²/4 · 1040.9 mm = 0.16044 kg
     assert shown["natural frequency"].found == pytest.approx(0.5 * np.sqrt(16e3 / 0.16044), rel=1e-4)
+    assert shown["natural frequency"].why == "½ √(R/m) with the rate R found at first touch and the helix's mass"
+    finished = replace(run, summary=run.summary | {"rate_30_70_after_N_per_mm": 17.0})
+    after = rows(Sheet(PRINTED, DM.elastic(5.0), 1260.0, wire("EN 10270-1 DH"), (88.5, 67.5), found=finished))
+    assert after["rate R"].found == 17.0
+    assert after["natural frequency"].found == pytest.approx(0.5 * np.sqrt(17e3 / 0.16044), rel=1e-4)
+    assert "R found of the finished spring" in after["natural frequency"].why
     assert shown["travel to buckling"].found is None
     endured = shown["permissible stress range"]
     line = goodman.line(wire("EN 10270-1 DH").endurance(), 5.0)
