@@ -261,8 +261,13 @@ def test_figures_of_each_kind_and_one_without_a_response(write_sweep, tmp_path):
     ("text", "value", "drawn", "problem"),
     [
         ("design: random\nsamples: 3\nvary: {spring.pitch: {from: 11, to: 12}}", float, "sensitivity", ""),
-        ("design: random\nsamples: 6\nvary: {spring.pitch: {from: 11, to: 12}}", lambda _: 0.0, "sensitivity", ""),
-        ("design: sobol_indices\nsamples: 2\nvary: {spring.pitch: {from: 11, to: 12}}", lambda _: 0.0, "scatter", ""),
+        ("design: random\nsamples: 6\nvary: {spring.pitch: {from: 11, to: 12}}", lambda _: 0.0, "characteristics", ""),
+        (
+            "design: sobol_indices\nsamples: 2\nvary: {spring.pitch: {from: 11, to: 12}}",
+            lambda k: 1e-14 * k,
+            "characteristics",
+            "",
+        ),
         ("design: latin_hypercube\nsamples: 4\nvary: {material: [ck15, voce]}", float, "scatter", ""),
         ("design: one_at_a_time\nchange: {material: ck15}\nvary: {material: [ck15, voce]}", float, None, ""),
         (

@@ -21,6 +21,7 @@ from coilset.model.sweep.plan import Plan
 
 LINE_LIMIT = 5000  # curves drawn in a family; of more, an even selection
 COLOURS = "viridis"
+NOTHING = 1e-9  # in any unit of a response
 
 
 def chosen(plan: Plan) -> list[Any]:
@@ -82,6 +83,12 @@ def _response(data: xr.Dataset, name: str, place: Any) -> np.ndarray:
     if name not in known:
         raise InputError(f"'{name}' is not a response of these cases ({', '.join(sorted(known))})", f"{place}.of")
     return data[name].to_numpy()
+
+
+def _varies(values: np.ndarray) -> bool:
+    """Whether a response differs between cases by more than rounding, as that of a set of springs that stay elastic."""
+    known = values[np.isfinite(values)]
+    return len(known) > 0 and float(np.ptp(known)) > max(findings.FLAT * float(np.abs(known).max()), NOTHING)
 
 
 def _levels(data: xr.Dataset, name: str) -> list[tuple[Any, np.ndarray]]:
@@ -194,7 +201,7 @@ def scatter(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     """A response over each input in turn, and its distribution."""
     values = _response(data, figure.of, place)
     good = np.isfinite(values)
-    if not good.any():
+    if not _varies(values):
         return None
     names, count = plan.names, len(plan.names) + 1
     drawn = Figure(figsize=(1.4 + 2.9 * min(count, 3), 0.6 + 2.8 * -(-count // 3)), layout="constrained")
@@ -230,6 +237,10 @@ def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
     for panel, of in zip(panels, figure.of, strict=True):
         values = _response(data, of, place)
         place_y = np.arange(len(names))
+        if not _varies(values):
+            panel.set_title(f"The {findings.words(data, of)} is the same in all cases", fontsize=9)
+            panel.set_axis_off()
+            continue
         if sobol:
             assert plan.spec.samples is not None
             found = sobol_indices(values, len(names), plan.spec.samples, plan.spec.seed)
