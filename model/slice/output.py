@@ -17,6 +17,8 @@ from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.slice.watch import shear
 from coilset.model.solid.continuum import mises
 
+FAINT = 1e-4  # of the largest stress: less is what the iteration leaves, as in an elastic spring after its release
+
 
 def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
     """One .vtu file per snapshot: the section in its current position, with its fields.
@@ -51,16 +53,19 @@ def figure(path: Path, analysis: SliceAnalysis) -> None:
     """Stress over the section at maximum force and at the end: shear, von Mises stress, and along a diameter."""
     shots = analysis.result.snapshots
     loaded = max(shots, key=lambda shot: abs(shot.force))
-    rows = [loaded, shots[-1]] if shots[-1] is not loaded else [loaded]
+    last = shots[-1]
+    stressed = float(np.abs(last.stress).max()) > FAINT * float(np.abs(loaded.stress).max())
+    rows = [loaded, last] if stressed and last is not loaded else [loaded]
     with mpl.rc_context(STYLE):
         sheet = Figure(figsize=(10.5, 3.3 * len(rows)), layout="constrained")
         axes = sheet.subplots(len(rows), 3, squeeze=False)
         for row, shot in zip(axes, rows, strict=True):
             _row(sheet, row, analysis, shot)
         law, coil = analysis.law.name, analysis.coil
-        least, most = (plain(float(f(mises(shots[-1].stress))), 2) for f in (np.min, np.max))
+        least, most = (plain(float(f(mises(rows[-1].stress))), 2) for f in (np.min, np.max))
+        none = "" if stressed else f"; at {last.name} no stress remains"
         sheet.suptitle(
-            f"At {shots[-1].name} the von Mises stress runs from {least} to {most} MPa ({law}, "
+            f"At {rows[-1].name} the von Mises stress runs from {least} to {most} MPa{none}\n({law}, "
             f"D = {2 * coil.radius:g} mm; the coil's axis is on the left)"
         )
         save(sheet, path)

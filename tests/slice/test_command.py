@@ -40,6 +40,17 @@ def test_files_and_summary(example, tmp_path):
     assert not (tmp_path / "here" / "section.png").exists()
 
 
+@pytest.mark.parametrize(("material", "maps"), [("elastic", 2), ("ck15", 4)])
+def test_the_rounding_that_is_left_in_an_elastic_section_is_not_drawn(example, tmp_path, monkeypatch, material, maps):
+    """Its 1e-6 MPa after the release had all colours."""
+    drawn = []
+    monkeypatch.setattr(output, "save", lambda sheet, path: drawn.append(sheet))
+    slice_case(example, tmp_path, settings=[*SHORT, f"material={material}"], across=3.0)
+    (sheet,) = drawn
+    assert sum(axes.get_ylabel() == "upward, η in mm" for axes in sheet.axes) == maps
+    assert ("at force 0 N no stress remains" in sheet.get_suptitle()) == (material == "elastic")
+
+
 def test_an_interrupted_picture_leaves_all_numbers(example, tmp_path, monkeypatch):
     def interrupt(*_args):
         raise KeyboardInterrupt
