@@ -310,7 +310,7 @@ class Result:
         return self.data["force_N"].to_numpy()
 
     def force_at(self, travel: float, phase: int | None = None) -> float:
-        """Axial force at a travel, N, by a monotone cubic through the steps.
+        """Axial force at a travel, N; between steps a cubic, or lines that meet where coils close or open.
 
         Args:
             travel: shortening of the unloaded spring as wound, mm.

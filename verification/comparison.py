@@ -87,13 +87,12 @@ class Comparison:
 
     Attributes:
         rows: the numbers.
-        characteristic: ascending travel (mm) and force (N) of each phase, between its steps too, shape (2, DRAWN).
-        force_error: of the maximum force by all causes, N; NaN where the run does not estimate it.
+        characteristic: ascending travel (mm), force (N) and its error of each phase, between its steps too, shape
+            (3, DRAWN); the error is NaN where the run does not estimate it.
     """
 
     rows: list[Compared]
     characteristic: list[np.ndarray]
-    force_error: float
 
 
 def compare(folder: str | Path, results: str | Path, overwrite: bool = False) -> Comparison:
@@ -114,8 +113,12 @@ def compare(folder: str | Path, results: str | Path, overwrite: bool = False) ->
     run = (_nest if nested else _case)(folder, results, overwrite)
     return Comparison(
         [_compared(table, row, line, run) for line, row in table.rows],
-        [np.array([way, [run.force_at(one, phase) for one in way.tolist()]]) for phase, way in run.ways],
-        run.error("force_max_N"),
+        [
+            np.array(
+                [way, *([read(one, phase) for one in way.tolist()] for read in (run.force_at, run.force_error_at))]
+            )
+            for phase, way in run.ways
+        ],
     )
 
 
@@ -125,13 +128,14 @@ class _Run:
 
     Attributes:
         summary: its numbers.
-        force_at: force at a travel in a phase, from 0 on.
+        force_at, force_error_at: force at a travel in a phase, from 0 on, and its error; NaN where not estimated.
         ways: each phase, and travels at equal distances over it.
         folder: of its results, where stresses are computed from; None of a nest.
     """
 
     summary: Mapping[str, Any]
     force_at: Callable[[float, int], float]
+    force_error_at: Callable[[float, int], float]
     ways: list[tuple[int, np.ndarray]]
     folder: Path | None = None
 
@@ -149,7 +153,7 @@ def _case(folder: Path, results: Path, overwrite: bool) -> _Run:
     for phase in np.unique(of_step).tolist():
         rows = np.flatnonzero(of_step == phase)
         ways.append((phase, _drawn(travel[rows[0] : rows[-1] + 2])))
-    return _Run(result.summary, result.force_at, ways, results)
+    return _Run(result.summary, result.force_at, result.force_error_at, ways, results)
 
 
 def _nest(folder: Path, results: Path, overwrite: bool) -> _Run:
@@ -171,7 +175,11 @@ def _nest(folder: Path, results: Path, overwrite: bool) -> _Run:
         way = np.argsort(parts[phase][0])
         return float(PchipInterpolator(*(part[way] for part in parts[phase]))(at))
 
-    return _Run(found, force_at, [(phase, _drawn(way)) for phase, (way, _) in enumerate(parts)])
+    def force_error_at(at: float, phase: int) -> float:
+        return run.error(FORCE)
+
+    run = _Run(found, force_at, force_error_at, [(phase, _drawn(way)) for phase, (way, _) in enumerate(parts)])
+    return run
 
 
 def _drawn(travel: np.ndarray) -> np.ndarray:
@@ -219,10 +227,12 @@ def _compared(table: Columns, row: dict[str, str], line: int, run: _Run) -> Comp
         return _given(table, row, line, column, *otherwise)
 
     travel = given("travel_mm") if quantity == FORCE else float("nan")
+    error = run.error(quantity)
     if quantity == FORCE:
         phase = given("phase", 1.0)
         try:
-            computed, name = run.force_at(travel, int(phase) - 1), f"{FORCE} at {travel:g} mm, phase {phase:g}"
+            computed, error = (read(travel, int(phase) - 1) for read in (run.force_at, run.force_error_at))
+            name = f"{FORCE} at {travel:g} mm, phase {phase:g}"
         except InputError:
             problem = f"{travel:g} mm are not reached in phase {phase:g} of the load program, the first being 1"
             raise InputError(problem, f"line {line}, column travel_mm", table.path) from None
@@ -237,7 +247,7 @@ def _compared(table: Columns, row: dict[str, str], line: int, run: _Run) -> Comp
         if value is None:
             raise InputError(f"'{quantity}' is unknown in this run", f"line {line}", table.path)
         computed = float(value)
-    return Compared(name, given("value"), given("error"), computed, run.error(quantity), travel)
+    return Compared(name, given("value"), given("error"), computed, error, travel)
 
 
 def figure(found: Comparison, name: str) -> Figure:
@@ -274,12 +284,11 @@ def _draw_ratios(axes: Axes, rows: list[Compared], name: str) -> None:
 
 
 def _draw_forces(axes: Axes, found: Comparison, forces: list[Compared]) -> None:
-    for k, (travel, force) in enumerate(found.characteristic):
+    for k, (travel, force, error) in enumerate(found.characteristic):
         label = "computed, with its estimated error" if not k else None
         axes.plot(travel, force, "-", color=f"C{k % 2}", lw=1.2, label=label)
-        if not np.isnan(found.force_error):
-            low, high = force - found.force_error, force + found.force_error
-            axes.fill_between(travel, low, high, color=f"C{k % 2}", alpha=0.2, lw=0)
+        if not np.isnan(error).all():
+            axes.fill_between(travel, force - error, force + error, color=f"C{k % 2}", alpha=0.2, lw=0)
     for met, colour in ((True, "k"), (False, "C3")):
         here = [row for row in forces if row.met is met]
         if here:

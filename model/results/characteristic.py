@@ -1,16 +1,12 @@
-"""Force and rate between the steps of a run: each phase is a monotone cubic through its steps.
+"""Force and rate at a travel: on the curve between the steps of a phase, see `between_steps`."""
 
-The cubic of Hermite between two steps has slopes at both, those of F. N. Fritsch and J. Butland (SIAM J. Sci. Stat.
-Comput. 5, 1984): weighted harmonic means of the rates of the steps on both sides, 0 where these differ in sign. It
-neither rounds off nor overshoots a kink where coils close. A phase of fewer than three steps, or one whose travel turns
-back, keeps its straight lines.
-"""
-
+import json
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
+from coilset.model.base.between_steps import closed_rate, part
 from coilset.model.base.errors import InputError
 
 ERROR = "estimated_force_error_N"
@@ -21,8 +17,8 @@ class Place(NamedTuple):
 
     Attributes:
         force: N; rate: its slope, N/mm.
-        error: estimated size of the error of the force, N: that of the steps around it, and how far the cubic lies from
-            the chord; not a number where that of a step is not known.
+        error: estimated size of the error of the force, N: that of the steps around it, and how far the curve may be
+            from there between them; not a number where that of a step is not known.
     """
 
     force: float
@@ -43,33 +39,25 @@ def place_at(data: xr.Dataset, travel: float, phase: int | None = None) -> Place
     """
     of_step = data["phase"].to_numpy()
     known = data[ERROR].to_numpy() if ERROR in data else np.full(len(of_step), np.nan)
-    columns = [np.append(0.0, values) for values in (data["travel_mm"].to_numpy(), data["force_N"].to_numpy(), known)]
+    count = data["contacts"].to_numpy() if "contacts" in data else np.zeros(len(of_step))
+    columns = data["travel_mm"].to_numpy(), data["force_N"].to_numpy(), known
+    x, y, error = (np.append(0.0, values) for values in columns)
+    contacts = np.append(count[:1], count)
+    rate = data["summary_rate_N_per_mm"].item() if "summary_rate_N_per_mm" in data else None
+    closed = closed_rate(json.loads(data.attrs.get("case", "{}")), rate)
     for number in np.unique(of_step) if phase is None else [phase]:
-        rows = np.flatnonzero(of_step == number) + 1  # the row before is the end of the phase before
+        rows = np.flatnonzero(of_step == number) + 1
         if not len(rows):
             break
-        x, y, error = (values[rows[0] - 1 : rows[-1] + 1] for values in columns)
-        if x.min() <= travel <= x.max():
-            return _on_phase(x, y, error, travel)
+        first, last = rows[0] - 1, rows[-1]  # from the end of the phase before
+        way = slice(first, last + 1)
+        if x[way].min() <= travel <= x[way].max():
+            force, slope, away = part(x, y, contacts, first, last, closed).at(travel)
+            order = np.argsort(x[way], kind="stable")
+            own = float(np.interp(travel, x[way][order], error[way][order]))
+            return Place(force, slope, own + away)
     where = "in no phase of the load program" if phase is None else f"not in loading.{phase}"
     raise InputError(f"{travel:g} mm is reached {where}", "travel")
-
-
-def _on_phase(x: np.ndarray, y: np.ndarray, error: np.ndarray, travel: float) -> Place:
-    from scipy.interpolate import PchipInterpolator
-
-    order = np.argsort(x, kind="stable")
-    x, y, error = x[order], y[order], error[order]
-    k = int(np.clip(np.searchsorted(x, travel), 1, len(x) - 1))
-    chord = float(np.interp(travel, x, y))
-    own = float(np.interp(travel, x[k - 1 : k + 1], error[k - 1 : k + 1]))
-    steps = np.diff(order)
-    if len(x) < 4 or not (np.all(steps == 1) or np.all(steps == -1)) or not np.all(np.diff(x) > 0.0):
-        way = x[k] - x[k - 1]
-        return Place(chord, float((y[k] - y[k - 1]) / way) if way else float("nan"), own)
-    cubic = PchipInterpolator(x, y)
-    force = float(cubic(travel))
-    return Place(force, float(cubic(travel, 1)), own + abs(force - chord))
 
 
 class Run(xr.Dataset):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coilset.model.base.between_steps import UNKNOWN, Between, closed_rate, part
 from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError, reading
 
@@ -29,6 +30,7 @@ class Found:
         ring: radius of that ring over the wire's radius.
         growth: of the mean diameter at the minimum height of a snapshot, over whole turns, about the middle half, mm.
         turns, torques: of the heads after each step, degrees and N mm; None unless they turn.
+        contacts: how many are closed after each step; None where that is unknown.
     """
 
     summary: dict[str, Any]
@@ -39,6 +41,7 @@ class Found:
     growth: float | None = None
     turns: np.ndarray | None = None
     torques: np.ndarray | None = None
+    contacts: np.ndarray | None = None
 
     def get(self, name: str) -> float | None:
         """An entry of the summary; None if it is missing."""
@@ -65,36 +68,57 @@ class Found:
         return self._passed(length, 0)
 
     def _passed(self, length: float, which: int) -> float | None:
-        return _passed(self.heights, self.forces, length, ROUNDING * self.heights[0], which)
+        i = _passed(self.heights, length, ROUNDING * self.heights[0], which)
+        if i is None or self.heights[i + 1] == self.heights[i]:
+            return None if i is None else float(self.forces[i + 1])  # of a hold, its end
+        low, high = sorted(self.heights[i : i + 2])
+        return self.way(i).at(self.heights[0] - float(np.clip(length, low, high)))[0]
+
+    def way(self, step: int = -1) -> Between:
+        """Force over the travel of the steps around one that go on in its sense; the last one is that of a release."""
+        travel = self.heights[0] - self.heights
+        senses = np.sign(np.diff(travel))
+        first = last = step % len(senses)
+        while first > 0 and senses[first - 1] == senses[step]:
+            first -= 1
+        while last + 1 < len(senses) and senses[last + 1] == senses[step]:
+            last += 1
+        counts = np.zeros(len(travel)) if self.contacts is None else self.contacts
+        case = self.summary.get("origin", {}).get("case", {})
+        closed = closed_rate(case, self.summary.get("rate_N_per_mm")) if self.contacts is not None else UNKNOWN
+        return part(travel, self.forces, counts, first, last + 1, closed)
 
     def torque_at(self, turn: float) -> float | None:
         """Torque when the heads last passed a rotation, N mm; positive ones in the sense of the largest, degrees."""
         if self.turns is None or self.torques is None:
             return None
         sense = float(np.sign(self.turns[np.argmax(np.abs(self.turns))]))
-        return _passed(sense * self.turns, sense * self.torques, turn, ROUNDING * float(np.ptp(self.turns)), -1)
+        turns, torques = sense * self.turns, sense * self.torques
+        i = _passed(turns, turn, ROUNDING * float(np.ptp(turns)), -1)
+        if i is None:
+            return None
+        way = turns[i + 1] - turns[i]
+        fraction = np.clip((turn - turns[i]) / way, 0.0, 1.0) if way else 1.0  # of a hold, its end
+        return float(torques[i] + fraction * (torques[i + 1] - torques[i]))
 
     def work_to(self, length: float) -> float | None:
         """Work of the first compression to a length, ∫ F ds, N mm; None if the first compression did not reach it."""
         first = int(np.argmin(self.heights)) + 1
-        heights, forces = self.heights[:first], self.forces[:first]
+        heights = self.heights[:first]
         if length < heights[-1] - ROUNDING * heights[0] or np.any(np.diff(heights) > 0):
             return None
-        grid: np.ndarray = np.append(heights[heights > length], length)
-        values = np.interp(-grid, -heights, forces)
-        return float(0.5 * np.sum((values[1:] + values[:-1]) * -np.diff(grid)))
+        travel, force = self.way(0).drawn()
+        end = self.heights[0] - max(length, heights[-1])
+        grid: np.ndarray = np.append(travel[travel < end], end)
+        values = np.interp(grid, travel, force)
+        return float(np.trapezoid(values, grid))
 
 
-def _passed(at: np.ndarray, values: np.ndarray, wanted: float, near: float, which: int) -> float | None:
-    """Value when `at` passed, or stood at, what is wanted, first (`which` is 0) or last (-1); None if it never did."""
+def _passed(at: np.ndarray, wanted: float, near: float, which: int) -> int | None:
+    """Step that passed, or stood at, what is wanted, the first (`which` is 0) or last one (-1); None if none did."""
     high, low = np.maximum(at[1:], at[:-1]), np.minimum(at[1:], at[:-1])
     passed = np.flatnonzero((low <= wanted + near) & (wanted - near <= high))
-    if len(passed) == 0:
-        return None
-    i = passed[which]
-    way = at[i + 1] - at[i]
-    fraction = np.clip((wanted - at[i]) / way, 0.0, 1.0) if way else 1.0  # of a hold, its end
-    return float(values[i] + fraction * (values[i + 1] - values[i]))
+    return int(passed[which]) if len(passed) else None
 
 
 def read(folder: str | Path) -> Found:
@@ -118,6 +142,9 @@ def read(folder: str | Path) -> Found:
         raise InputError(f"is not a result of coilset solve ({missing!r})", "", folder)
     heights, forces = history.numbers("seat_height_mm"), history.numbers("force_N")
     found = Found(summary, np.append(before, heights), np.append(0.0, forces), *_points(folder / "points.nc"))
+    if "contacts" in history.names:
+        count = history.numbers("contacts")
+        found = replace(found, contacts=np.append(count[:1], count))
     if summary.get("turn_max_deg") is None:
         return found
     turns, torques = (np.append(0.0, history.numbers(name)) for name in ("turn_deg", "torque_Nmm"))

@@ -125,7 +125,7 @@ def test_wound_coils_of_a_run_open_at_what_remains_of_their_initial_tension(tmp_
     summary = {"free_length_before_mm": 95.5, "free_length_after_mm": 96.0, "set_mm": -0.5}
     summary |= {"initial_tension_N": 25.0, "initial_tension_after_N": 10.0}
     (tmp_path / "summary.json").write_text(json.dumps(summary))
-    (tmp_path / "history.csv").write_text("seat_height_mm,force_N\n127,-100\n107,-40\n96,0\n")
+    (tmp_path / "history.csv").write_text("seat_height_mm,force_N,contacts\n127,-100,0\n107,-40,0\n96,0,9\n")
     found = document(case, spring, case_sheet(case, spring, from_results.read(tmp_path)), "", (), Words("en"))
     _, run, points = found.panels[0].traces
     assert run["y"][:2] == pytest.approx([0.0, 10.0])

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from coilset.model.base.between_steps import Between
 from coilset.model.case import read_case
-from coilset.model.results.records.rates import Curve, finished, first_compression, makers_rate, rate_at, tension
+from coilset.model.results.records.rates import finished, first_compression, makers_rate, tension
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
@@ -21,7 +22,7 @@ def step(number, travel, force, free_length=50.0):
 
 def test_the_makers_rate_is_the_secant_from_30_to_70():
     force = 3.0 * TRAVEL + 0.5 * TRAVEL**2
-    curve = Curve(TRAVEL, force, np.zeros(21))
+    curve = Between.through(TRAVEL, force)
     assert makers_rate(curve, 10.0) == pytest.approx((3 * 4 + 0.5 * (49 - 9)) / 4)
     assert makers_rate(curve, 15.0) is None
 
@@ -29,9 +30,9 @@ def test_the_makers_rate_is_the_secant_from_30_to_70():
 def test_the_rate_is_that_of_open_coils_where_a_step_closes_them():
     """Open up to 8 mm with 3 N/mm, then 50 N/mm, in steps of which one leads from 5 to 9 mm."""
     travel = np.array([0.0, 2.0, 5.0, 9.0, 10.0])
-    curve = Curve(travel, np.maximum(3.0 * travel, 24.0 + 50.0 * (travel - 8.0)), np.array([2, 2, 2, 6, 8]))
+    curve = Between(travel, np.maximum(3.0 * travel, 24.0 + 50.0 * (travel - 8.0)), np.array([2, 2, 2, 6, 8]))
     assert makers_rate(curve, 10.0) == pytest.approx(3.0)
-    assert [curve.at(travel) for travel in (1.0, 8.5, 9.5)] == pytest.approx([3.0, 49.0, 99.0])
+    assert [curve.at(travel)[0] for travel in (1.0, 8.5, 9.5)] == pytest.approx([3.0, 49.0, 99.0])
 
 
 @pytest.mark.parametrize("first", [(0.5,), ()])
@@ -51,32 +52,31 @@ def test_the_initial_tension_needs_no_step_in_which_coils_touch(first):
 
 @pytest.mark.parametrize("at", [0.1, 4.2, 9.9])
 def test_the_rate_at_a_travel_is_exact_for_a_parabola(at):
-    assert rate_at(TRAVEL, 3.0 * TRAVEL + 0.5 * TRAVEL**2, at) == pytest.approx(3.0 + at, rel=1e-10)
-    assert rate_at(TRAVEL, TRAVEL, 10.1) is None
+    assert Between.through(TRAVEL, 3.0 * TRAVEL + 0.5 * TRAVEL**2).at(at)[1] == pytest.approx(3.0 + at, rel=1e-10)
 
 
 def test_branches_of_a_characteristic():
     there = [step(k, travel, 2 * travel) for k, travel in enumerate((2.0, 4.0, 6.0))]
     back = [step(3 + k, travel, 3 * (travel - 2.0)) for k, travel in enumerate((4.0, 2.0))]
-    assert first_compression([*there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
+    assert first_compression([*there, *back]).travel.tolist() == [0.0, 2.0, 4.0, 6.0]
     grown = [step(k, -0.1 * k, 0.0) for k in range(3)]  # by heat
-    assert first_compression([*grown, *there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
-    travel, force, _ = finished([*there, *back], 0, 48.0)
-    assert travel.tolist() == [0.0, 2.0, 4.0]
-    assert force.tolist() == [0.0, 6.0, 12.0]
+    assert first_compression([*grown, *there, *back]).travel.tolist() == [0.0, 2.0, 4.0, 6.0]
+    curve = finished([*there, *back], 0, 48.0)
+    assert curve.travel.tolist() == [0.0, 2.0, 4.0]
+    assert curve.force.tolist() == [0.0, 6.0, 12.0]
     again = [Step(9, 1, 1.0, 48.0 - travel, 2.0 + travel, 2.5 * travel, 1, 1, 0, 0, 0, 0.0) for travel in (1.0, 3.0)]
-    assert finished([*there, *back, *again], 0, 48.0)[1].tolist() == [0.0, 2.5, 7.5]
+    assert finished([*there, *back, *again], 0, 48.0).force.tolist() == [0.0, 2.5, 7.5]
 
 
 def test_steps_to_where_the_spring_is_end_no_branch():
     """As of phases to the same target; one in which the force has fallen at the same height is another branch."""
     there = [step(k, travel, 2 * travel) for k, travel in enumerate((2.0, 4.0, 4.0, 6.0))]
     back = [step(4 + k, travel, 3 * (travel - 2.0)) for k, travel in enumerate((4.0, 4.0, 2.0, 2.0 + 1e-12, 2.0))]
-    assert first_compression([*there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
-    assert finished([*there, *back], 0, 48.0)[1].tolist() == [0.0, 6.0, 12.0]
+    assert first_compression([*there, *back]).travel.tolist() == [0.0, 2.0, 4.0, 6.0]
+    assert finished([*there, *back], 0, 48.0).force.tolist() == [0.0, 6.0, 12.0]
     relaxed = [step(0, 2.0, 4.0), step(1, 2.0, 3.0), step(2, 4.0, 7.0)]
-    assert first_compression(relaxed)[1].tolist() == [0.0, 4.0]
-    assert first_compression([])[0].tolist() == [0.0]
+    assert first_compression(relaxed).force.tolist() == [0.0, 4.0]
+    assert first_compression([]).travel.tolist() == [0.0]
 
 
 @pytest.fixture(scope="module")

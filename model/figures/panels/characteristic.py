@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from coilset.model.base.between_steps import UNKNOWN, Between, closed_rate, part
 from coilset.model.figures.panels.panel import COLOURS, GREY, Panel, axis, curve, upright
 from coilset.model.figures.panels.phases import Phase, phases, unnamed
 from coilset.model.results.files.opened import Run
@@ -14,7 +14,6 @@ from coilset.model.results.records.working import number_name
 
 HEIGHT = 440  # pixels, the same for both, which stand side by side
 NAMED = len(COLOURS)  # targets
-BETWEEN = 12  # points drawn from a step to the next
 SHORT = 0.25  # of the travel to block: an arrow of the set that its text would hide
 AGAIN = "For the second loading, add a phase to the load program, such as “- to: {}”, and solve again."
 
@@ -25,13 +24,11 @@ def characteristic(run: Run) -> Panel:
         return torque_curve(run)
     summary, found = run.summary, phases(run, NAMED)
     traces = []
-    wound = summary.get("initial_tension_N") is not None
-    for phase, travel, force in _curves(run, found):
+    for phase, between in _curves(run, found):
         colour = phase.number if phase.number < NAMED else GREY
         entry: dict[str, Any] = {"name": phase.label, "legendgroup": phase.label}
-        kinks = opening(run, phase) if wound else closing(run, phase)
-        traces.append(curve(*smooth(travel, force, kinks), colour, hoverinfo="skip", showlegend=phase.named, **entry))
-        steps = curve(travel, force, colour, marker=5, showlegend=False, **entry)
+        traces.append(curve(*between.drawn(), colour, hoverinfo="skip", showlegend=phase.named, **entry))
+        steps = curve(between.travel, between.force, colour, marker=5, showlegend=False, **entry)
         traces.append(steps | {"mode": "markers", "marker": {"size": 5, "color": steps["line"]["color"]}})
     traces += unnamed(found, NAMED)
     greatest, rate, set_mm = summary["force_max_N"], summary["rate_N_per_mm"], summary["set_mm"]
@@ -75,9 +72,9 @@ def _again(run: Run) -> str:
 def torque_curve(run: Run) -> Panel:
     """Torque over the rotation of the top head against the bottom one, one line per phase, with rate and set."""
     summary, found, traces = run.summary, phases(run, NAMED), []
-    for phase, turn, torque in _curves(run, found, ("turn_deg", "torque_Nmm")):
+    for phase, turned in _curves(run, found, ("turn_deg", "torque_Nmm")):
         colour = phase.number if phase.number < NAMED else GREY
-        traces.append(curve(turn, torque, colour, marker=5, name=phase.label, showlegend=phase.named))
+        traces.append(curve(turned.travel, turned.force, colour, marker=5, name=phase.label, showlegend=phase.named))
     traces += unnamed(found, NAMED)
     greatest, rate, most = (summary[name] for name in ("torque_max_Nmm", "turn_rate_Nmm_per_deg", "turn_max_deg"))
     x = np.array([0.0, np.copysign(min(abs(greatest / rate), abs(most)), most)])
@@ -114,12 +111,14 @@ def _working(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 def _curves(
     run: Run, found: list[Phase], names: tuple[str, str] = ("travel_mm", "force_N")
-) -> Iterator[tuple[Phase, np.ndarray, np.ndarray]]:
-    """Travel (mm) and force (N), or other columns, of each phase, from the end of the one before on."""
+) -> Iterator[tuple[Phase, Between]]:
+    """Force (N) over travel (mm), or other columns, of each phase, from the end of the one before on."""
     travel, force = (np.append(0.0, run.data[name].values) for name in names)
+    count = run.data["contacts"].values if names[1] == "force_N" else np.zeros(len(travel) - 1)
+    closed = closed_rate(run.case, run.summary["rate_N_per_mm"]) if names[1] == "force_N" else UNKNOWN
     for phase in found:
-        steps = np.append(phase.steps[0], phase.steps + 1)
-        yield phase, travel[steps], force[steps]
+        first, last = int(phase.steps[0]), int(phase.steps[-1]) + 1
+        yield phase, part(travel, force, np.append(count[:1], count), first, last, closed)
 
 
 def _opening_travel(run: Run, held: float) -> float:
@@ -133,64 +132,6 @@ def _opening_travel(run: Run, held: float) -> float:
         return -held * float(travel[closed[0]] / force[closed[0]])
     rate = run.summary["rate_N_per_mm"]
     return -held / rate if rate else 0.0
-
-
-def opening(run: Run, phase: Phase) -> list[int]:
-    """Points of a phase's curve before which wound coils open or close."""
-    found: list[int] = (np.flatnonzero(np.diff(_contacts(run, phase, 1) > 0)) + 1).tolist()
-    return found
-
-
-def closing(run: Run, phase: Phase) -> list[int]:
-    """Points of a phase's curve before which the first coils close, or the last ones open."""
-    count = _contacts(run, phase, 0)
-    change = np.diff(count)
-    stays = change == 0
-    closes, opens = (change > 0) & np.append(False, stays[:-1]), (change < 0) & np.append(stays[1:], False)
-    found: list[int] = (np.flatnonzero(closes | opens) + 1).tolist()
-    return found
-
-
-def _contacts(run: Run, phase: Phase, before: int) -> np.ndarray:
-    """How many contacts are closed at the points of a phase's curve; `before`: before the first step."""
-    return np.append(before, run.data["contacts"].values)[np.append(phase.steps[0], phase.steps + 1)]
-
-
-def smooth(travel: npt.ArrayLike, force: npt.ArrayLike, kinks: Sequence[int] = ()) -> tuple[np.ndarray, np.ndarray]:
-    """A phase's force over travel, through its steps by monotone cubic Hermite interpolation (Fritsch and Carlson).
-
-    It has no corner at a step and no value beyond its neighbours, so that it neither rounds off nor overshoots a kink
-    where coils close. A phase of fewer than three steps, or one whose travel turns back, keeps its straight lines. At
-    `kinks`, points before which the rate jumps, the curve is cut, and its pieces are joined where the lines through the
-    two points before and behind meet, if that is between them, else by a straight line.
-    """
-    x, y = np.asarray(travel, float), np.asarray(force, float)
-    if kinks:
-        xs, ys = np.split(x, kinks), np.split(y, kinks)
-        pieces = [smooth(xs[0], ys[0])]
-        for k, after, force_after in zip(kinks, xs[1:], ys[1:], strict=True):
-            pieces += [_meeting(x[k - 2 : k + 2], y[k - 2 : k + 2]), smooth(after, force_after)]
-        return np.concatenate([x for x, _ in pieces]), np.concatenate([y for _, y in pieces])
-    from scipy.interpolate import PchipInterpolator
-
-    way = np.diff(x)
-    if len(x) < 4 or not (np.all(way > 0.0) or np.all(way < 0.0)):
-        return x, y
-    fine = np.interp(np.arange(BETWEEN * (len(x) - 1) + 1) / BETWEEN, np.arange(len(x)), x)
-    order = np.argsort(x)
-    return fine, PchipInterpolator(x[order], y[order])(fine)
-
-
-def _meeting(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Where the lines through the first and the last two of four points meet, if between them: one point, or none."""
-    way = np.diff(x)
-    if len(way) == 3 and np.all(way[[0, 2]] != 0.0):
-        first, last = np.diff(y)[[0, 2]] / way[[0, 2]]
-        if first != last:
-            at = (y[2] - y[1] + first * x[1] - last * x[2]) / (first - last)
-            if min(x[1], x[2]) < at < max(x[1], x[2]):
-                return np.array([at]), np.array([y[1] + first * (at - x[1])])
-    return x[:0], y[:0]
 
 
 def compressed(force: float) -> str:
@@ -236,11 +177,11 @@ def rate_curve(run: Run) -> Panel | None:
     if run.is_turned:
         return None
     traces, found = [], phases(run, NAMED)
-    for phase, travel, force in _curves(run, found):
-        apart = np.append(True, np.abs(np.diff(travel)) > 1e-9 * np.ptp(travel))
-        if apart.sum() > 2:
-            rates, colour = np.gradient(force[apart], travel[apart]), phase.number if phase.number < NAMED else GREY
-            traces.append(curve(travel[apart], rates, colour, marker=5, name=phase.label, showlegend=phase.named))
+    for phase, between in _curves(run, found):
+        if len(between.travel) > 2 and between.runs_on:
+            colour = phase.number if phase.number < NAMED else GREY
+            line = curve(*between.rates_drawn(), colour, name=phase.label, showlegend=phase.named)
+            traces.append(line)
     if not traces:
         return None
     rate = run.summary["rate_N_per_mm"]

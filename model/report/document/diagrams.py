@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from coilset.model.figures.panels.characteristic import smooth
+from coilset.model.base.between_steps import Between
 from coilset.model.figures.panels.goodman import goodman
 from coilset.model.figures.panels.panel import GREY, Panel, Trace, axis, curve
 from coilset.model.results.records.record import Limit
@@ -38,8 +38,10 @@ def _force(sheet: Sheet, limits: Mapping[str, Limit]) -> Panel:
     after = sheet.at_run("free_length_after_mm") or s.length
     traces = [curve(sign * (s.length - lengths), sign * np.array(forces), GREY, dash="dash", name="by the formula")]
     if sheet.found:
-        x, y = _last_way(sheet.found.heights, sheet.found.forces)
-        traces.append(curve(*_opening(sheet, sign * (after - x), sign * y), 0, name="by the run"))
+        way = sheet.found.way()
+        moved = after - sheet.found.heights[0]
+        drawn = Between(sign * (way.travel + moved), sign * way.force, way.contacts, way.before, way.behind)
+        traces.append(curve(*_opening(sheet, drawn), 0, name="by the run"))
     points = []
     for length in sheet.lengths:
         force = sheet.found.force_at(length) if sheet.found else None
@@ -57,18 +59,18 @@ def _force(sheet: Sheet, limits: Mapping[str, Limit]) -> Panel:
     )
 
 
-def _opening(sheet: Sheet, travel: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _opening(sheet: Sheet, way: Between) -> tuple[np.ndarray, np.ndarray]:
     """The curve of a run through its steps; wound coils open at F0 on the line through the first two beyond it."""
     held = sheet.at_run("initial_tension_after_N") or sheet.at_run("initial_tension_N")
     if not (sheet.pulled and held):
-        return smooth(travel, force)
-    order = np.argsort(travel)
-    x, y = travel[order], force[order]
+        return way.drawn()
+    order = np.argsort(way.travel)
+    x, y = way.travel[order], way.force[order]
     x, y = x[y > held], y[y > held]
     if len(x) < 2 or y[1] <= y[0]:
-        return smooth(travel, force)
+        return way.drawn()
     opens = x[0] - (y[0] - held) * (x[1] - x[0]) / (y[1] - y[0])
-    x, y = smooth(np.append(opens, x), np.append(held, y))
+    x, y = Between.through(np.append(opens, x), np.append(held, y)).drawn()
     return np.append(0.0, x), np.append(0.0, y)
 
 
@@ -81,7 +83,7 @@ def _torque(sheet: Sheet, limits: Mapping[str, Limit]) -> Panel:
     if found and found.turns is not None and found.torques is not None:
         sense = np.sign(found.turns[np.argmax(np.abs(found.turns))])
         x, y = _last_way(sense * found.turns, sense * found.torques)
-        traces.append(curve(*smooth(x, y), 0, name="by the run"))
+        traces.append(curve(*Between.through(x, y).drawn(), 0, name="by the run"))
         passed = ((turn, found.torque_at(turn)) for turn, _ in points)
         points = [(turn, torque) for turn, torque in passed if torque is not None]
     if limit := limits.get("torque_max_Nmm"):

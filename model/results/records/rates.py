@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 from itertools import dropwhile
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
+from coilset.model.base.between_steps import Between, part
 from coilset.model.results.records.record import Result, Setup, Step
 from coilset.model.results.records.releases import Release, is_turned
 
@@ -13,38 +14,13 @@ MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures t
 STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less changes nothing
 
 
-class Curve(NamedTuple):
-    """Ascending travels, mm, the forces there, N, and how many contacts are closed."""
-
-    travel: np.ndarray
-    force: np.ndarray
-    contacts: np.ndarray
-
-    def at(self, travel: float) -> float:
-        """Force at a travel, N, between two steps by a straight line.
-
-        Where the first coils close between them, the rate jumps on the way: there the force follows the lines through
-        the two steps before and the two behind.
-        """
-        chord = float(np.interp(travel, self.travel, self.force))
-        i = int(np.searchsorted(self.travel, travel))
-        if not 2 <= i < len(self.travel) - 1 or not self.contacts[i - 2] == self.contacts[i - 1] < self.contacts[i]:
-            return chord
-        return min(chord, max(self._line(i - 1, travel), self._line(i + 1, travel)))
-
-    def _line(self, i: int, travel: float) -> float:
-        """Force on the line through a point and the one before it, N."""
-        rate = (self.force[i] - self.force[i - 1]) / (self.travel[i] - self.travel[i - 1])
-        return float(self.force[i] + rate * (travel - self.travel[i]))
-
-
-def first_compression(steps: Sequence[Step]) -> Curve:
+def first_compression(steps: Sequence[Step]) -> Between:
     """The curve from the start to the first release; a free spring may be heated before."""
     pressed = dropwhile(lambda step: step.travel_mm <= 0.0, steps)
     return _ascending([(step.travel_mm, step.force_N, step.contacts) for step in pressed])
 
 
-def finished(steps: Sequence[Step], phase: int, height: float, whole: float = 0.0) -> Curve:
+def finished(steps: Sequence[Step], phase: int, height: float, whole: float = 0.0) -> Between:
     """The curve of the finished spring, after a release that ended at a seat height, mm.
 
     That of the compression after the released phase, if it covers what `makers_rate` needs of the travel `whole` to
@@ -53,26 +29,31 @@ def finished(steps: Sequence[Step], phase: int, height: float, whole: float = 0.
     before = [step for step in steps if step.phase <= phase]
     later = [step for step in steps if step.phase > phase]
     compression, release = (
-        _ascending([(height - step.seat_height_mm, step.force_N, step.contacts) for step in path])
+        _ascending([(height - step.seat_height_mm, step.force_N, step.contacts) for step in path], path is later)
         for path in (later, before[-2::-1])
     )
     return compression if later and compression.travel[-1] >= MAKERS[1] * whole else release
 
 
-def _ascending(points: Sequence[tuple[float, float, int]]) -> Curve:
-    """The curve from 0 on, as far as the travel grows; points that repeat the one before are left out."""
+def _ascending(points: Sequence[tuple[float, float, int]], in_time: bool = True) -> Between:
+    """The curve from 0 on, as far as the travel grows; points that repeat the one before are left out.
+
+    The release behind it shows the rate at its end, if the points are given as they followed each other `in_time`.
+    """
     least = STANDS * np.abs(np.reshape(points, (-1, 3))).max(axis=0, initial=0.0)[:2]
-    found = [(0.0, 0.0, points[0][2] if points else 0)]
+    found, behind = [(0.0, 0.0, points[0][2] if points else 0)], list[tuple[float, float, int]]()
     for point in points:
         if np.all(np.abs(np.subtract(point[:2], found[-1][:2])) <= least):
             continue
         if point[0] <= found[-1][0]:
+            behind = [point] * in_time
             break
         found.append(point)
-    return Curve(*np.array(found).T)
+    travel, force, contacts = np.array([*found, *behind], float).T
+    return part(travel, force, contacts, 0, len(found) - 1)
 
 
-def makers_rate(curve: Curve, whole: float) -> float | None:
+def makers_rate(curve: Between, whole: float) -> float | None:
     """Force over travel between 30 and 70 % of the travel to block, N/mm; None if the curve does not extend that far.
 
     Args:
@@ -82,16 +63,12 @@ def makers_rate(curve: Curve, whole: float) -> float | None:
     low, high = (share * whole for share in MAKERS)
     if whole <= 0.0 or curve.travel[-1] < high:
         return None
-    return (curve.at(high) - curve.at(low)) / (high - low)
+    return (curve.at(high)[0] - curve.at(low)[0]) / (high - low)
 
 
-def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
-    """Slope at a travel of the parabola through the three points next to it, N/mm; None beyond the curve."""
-    if len(travel) < 3 or at > travel[-1]:
-        return None
-    middle = int(np.clip(np.abs(travel - at).argmin(), 1, len(travel) - 2))
-    near = slice(middle - 1, middle + 2)
-    return float(np.polyval(np.polyder(np.polyfit(travel[near] - at, force[near], 2)), 0.0))
+def _force_and_rate(curve: Between, travel: float) -> tuple[float | None, float | None]:
+    """Force, N, and rate, N/mm, at a travel; None beyond the curve."""
+    return curve.at(travel)[:2] if len(curve.travel) > 1 and travel <= curve.travel[-1] else (None, None)
 
 
 def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
@@ -106,12 +83,9 @@ def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, An
         "rate_30_70_N_per_mm": makers_rate(curve, setup.spring.free_length - block),
         "rate_30_70_after_N_per_mm": after,
         "rates": tuple(
-            {
-                "travel_mm": at,
-                "force_N": curve.at(at) if at <= curve.travel[-1] else None,
-                "rate_N_per_mm": rate_at(curve.travel, curve.force, at),
-            }
+            {"travel_mm": at, "force_N": force, "rate_N_per_mm": rate}
             for at in setup.rates_at
+            for force, rate in [_force_and_rate(curve, at)]
         ),
     }
 

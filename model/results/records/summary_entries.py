@@ -48,7 +48,7 @@ class Summary:
     rates: tuple[dict[str, Any], ...] = entry(
         "",
         "at the travels of the case's `rates_at`: `travel_mm`, `force_N`, and `rate_N_per_mm`, the slope of the "
-        "first compression there by a parabola through three steps",
+        "first compression there",
     )
     force_max_N: float = entry("N", "the force of largest magnitude in any step", in_slice=True)
     force_max_is_given: bool = entry("", "whether the load program gives that force, so that its height was computed")
