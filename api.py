@@ -14,7 +14,7 @@ Units are N, mm, MPa and K. Wrong input raises `InputError` in one line; a run t
 ... )
 >>> result = solve(case)
 >>> print(f"set {result.set:.1f} mm, {result.force_at(10):.0f} N at 10 mm")
-set 13.3 mm, 178 N at 10 mm
+set 13.3 mm, 179 N at 10 mm
 """
 
 import copy
@@ -321,7 +321,7 @@ class Result:
 
         >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
         >>> print(f"{result.force_at(10):.0f} N when pressed, {result.force_at(15, phase=1):.0f} N on release")
-        178 N when pressed, 71 N on release
+        179 N when pressed, 71 N on release
         """
         return place_at(self.data, travel, phase).force
 

@@ -102,9 +102,11 @@ def _tension(s: Mapping[str, Any]) -> list[Number]:
     if s.get("initial_tension_N") is None:
         return []
     after = s["initial_tension_after_N"]
-    left = "" if after is None else f"{with_unit(after, 'N', 1)} after the last release"
+    of_after = s.get("estimated_initial_tension_after_error_N")
+    left = "" if after is None else f"{_within(after, of_after, 'N', 1)} after the last release"
     rate = with_unit(s["open_rate_N_per_mm"], "N/mm", 3)
-    held = Number("initial tension", with_unit(s["initial_tension_N"], "N", 1), left)
+    of_first = s.get("estimated_initial_tension_error_N")
+    held = Number("initial tension", _within(s["initial_tension_N"], of_first, "N", 1), left)
     return [held, Number("rate, coils open", rate), *_beyond_coil(s, "hooks")]
 
 

@@ -21,6 +21,7 @@ KINDS = {
     "hands": "both springs are wound in the same direction",
     "index": "the spring index D/d is outside the usual range",
     "initial rate": "the initial rate could not be computed",
+    "initial tension": "few steps show the initial tension",
     "lift-off": "an end lifts off its seat",
     "peened layer": "the integration points are too coarse for the peened layer",
     "measured axis": "the measured axis is away from the z axis of its file",

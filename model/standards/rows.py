@@ -124,7 +124,9 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
         yield Row("  with hooks", sheet.pull_rate, "N/mm", "1/(1/R + ∫ m²/(E I, G J) ds)", DERIVED, opened, why)
     if sheet.tension:
         first, after = sheet.at_run("initial_tension_N"), sheet.at_run("initial_tension_after_N")
-        why = "" if after is None else f"after the last release; {first:.4g} N before"
+        errors = [sheet.at_run(f"estimated_initial_tension{when}_error_N") for when in ("", "_after")]
+        before, left = ("" if error is None else f"± {error:.2g} N" for error in errors)
+        why = before if after is None else f"{left} after the last release; {first:.4g} N {before} before".strip()
         yield Row("initial tension F0", sheet.tension, "N", "", GIVEN, first if after is None else after, why)
         τ0 = en13906.stress(sheet.tension, s.d, s.D)
         yield Row("  stress τ0", τ0, "MPa", "8 D F0/(π d³)", DERIVED)

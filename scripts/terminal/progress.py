@@ -307,8 +307,9 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Rows of a spring that is compressed or pulled."""
     of_set = summary["estimated_set_error_mm"]
     if summary["initial_tension_N"] is not None:
-        yield "initial tension before", quantity(summary["initial_tension_N"], "N", 2)
-        yield "initial tension after", quantity(summary["initial_tension_after_N"], "N", 2)
+        for when, name in (("before", ""), ("after", "_after")):
+            error = summary[f"estimated_initial_tension{name}_error_N"]
+            yield f"initial tension {when}", within(summary[f"initial_tension{name}_N"], error, "N", 2)
         yield "rate, coils open", quantity(summary["open_rate_N_per_mm"], "N/mm")
     yield from _beyond_coil(summary, "hooks")
     yield "free length before", quantity(summary["free_length_before_mm"], "mm")

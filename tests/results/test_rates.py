@@ -1,5 +1,6 @@
 """Rates from a characteristic, against curves whose slope is known, and active turns of a spring that is released."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -35,19 +36,52 @@ def test_the_rate_is_that_of_open_coils_where_a_step_closes_them():
     assert [curve.at(travel)[0] for travel in (1.0, 8.5, 9.5)] == pytest.approx([3.0, 49.0, 99.0])
 
 
+WOUND = SimpleNamespace(wound_solid=True)
+
+
+def pulled(number, travel, phase=0, held=25.0, free=0.0):
+    """Coils that give way by 27 N/mm from where the spring is free, behind F0 by 3 N/mm, which bends a little."""
+    opens = free + held / 27.0
+    way = travel - opens
+    force = held + 3.0 * way + 2e-4 * way**2 if way > 0.0 else 27.0 * (travel - free)
+    contacts = 0 if way > 0.0 else 432
+    one = Step(number, phase, 1.0, 50.0 + travel, -travel, -force, 1, 1, 0, 0, contacts, 0.0)
+    return replace(one, estimated_force_error_N=0.001)
+
+
 @pytest.mark.parametrize("first", [(0.5,), ()])
 def test_the_initial_tension_needs_no_step_in_which_coils_touch(first):
-    """25 N of coils that give way by 27 N/mm, 3 N/mm behind: with a step on the way there, and without."""
+    """With a step on the way to F0, and without; two open steps show it, but not its error."""
+    steps = [pulled(number, travel, 0) for number, travel in enumerate((*first, 10.0, 20.0), 1)]
+    found = tension(WOUND, SimpleNamespace(steps=steps, rate=27.0), None)
+    assert found["initial_tension_N"] == pytest.approx(25.0, abs=0.05)
+    assert found["open_rate_N_per_mm"] == pytest.approx(3.0, rel=0.01)
+    assert found["estimated_initial_tension_error_N"] is None
 
-    def pulled(number, travel):
-        contacts = 4 if 27.0 * travel < 25.0 else 0
-        force = 27.0 * travel if contacts else 25.0 + 3.0 * (travel - 25.0 / 27.0)
-        return Step(number, 0, 1.0, 50.0 + travel, -travel, -force, 1, 1, 0, 0, contacts, 0.0)
 
-    steps = [pulled(number, travel) for number, travel in enumerate((*first, 10.0, 20.0))]
-    found = tension(SimpleNamespace(wound_solid=True), SimpleNamespace(steps=steps, rate=27.0), None)
-    assert found["initial_tension_N"] == pytest.approx(25.0)
-    assert found["open_rate_N_per_mm"] == pytest.approx(3.0)
+@pytest.mark.parametrize("number", [3, 4, 8, 20, 100])
+def test_the_initial_tension_hardly_depends_on_the_steps(number):
+    """Nor on the step at whose end the spring is free of load, its coils closed; it is within its error."""
+    there = [pulled(k, 100.0 * k / number) for k in range(1, number + 1)]
+    ways = (80.0, 50.0, 30.0, 10.0)
+    back = [pulled(number + k, way, 1, 14.0, 0.2) for k, way in enumerate(ways, 1)]
+    last = Step(number + 5, 1, 1.0, 50.2, -0.2, -1e-9, 1, 1, 0, 0, 432, 0.0)
+    steps = [*there, *back, last]
+    release = SimpleNamespace(step=last, phase=1)
+    found = tension(WOUND, SimpleNamespace(steps=steps, rate=27.0), release)
+    for name, held in (("", 25.0), ("_after", 14.0)):
+        error = found[f"estimated_initial_tension{name}_error_N"]
+        assert 0.001 <= error < 0.6
+        assert abs(found[f"initial_tension{name}_N"] - held) <= error
+    opened = tension(WOUND, SimpleNamespace(steps=steps, rate=27.0), SimpleNamespace(step=replace(last, contacts=0)))
+    assert opened["initial_tension_after_N"] == 0.0
+
+
+def test_an_initial_tension_that_steps_do_not_show_is_none():
+    for travels in ((100.0,), (0.2, 0.4)):
+        steps = [pulled(k, travel) for k, travel in enumerate(travels, 1)]
+        found = tension(WOUND, SimpleNamespace(steps=steps, rate=27.0), None)
+        assert set(found.values()) == {None}
 
 
 @pytest.mark.parametrize("at", [0.1, 4.2, 9.9])

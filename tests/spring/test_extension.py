@@ -46,6 +46,16 @@ def test_force_and_travel_of_an_elastic_spring(hand):
     assert abs(summary["set_mm"]) < 0.01 * WIRE  # by which coils under F0 sink into each other from the drawing
 
 
+@pytest.mark.parametrize(("steps", "said"), [(1, "cannot be determined"), (2, "has no known error"), (4, None)])
+def test_too_few_open_steps_have_a_warning(steps, said):
+    analysis, summary = solved([{"to": {"force": -60}, "steps": steps}])
+    analysis.recorder.end(analysis.result)
+    warnings = [one["message"] for one in summarise(analysis.setup, analysis.result)["warnings"]]
+    found = [one for one in warnings if "initial tension" in one]
+    assert [said in one for one in found] == [True] * (said is not None)
+    assert (summary["initial_tension_N"] is None) == (steps == 1)
+
+
 def test_the_set_is_that_of_a_wire_in_torsion(ck15):
     """Beyond yield, by the law's curve in shear: s(F) = n 2π r² (κ(F) − κ(F0)), then elastic; 2 % are asked for."""
     loading = [{"to": {"force": -52}, "steps": 12}, {"to": {"force": 0}, "steps": 2}]

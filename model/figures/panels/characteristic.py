@@ -9,7 +9,7 @@ from coilset.model.base.between_steps import UNKNOWN, Between, closed_rate, part
 from coilset.model.figures.panels.panel import COLOURS, GREY, Panel, axis, curve, upright
 from coilset.model.figures.panels.phases import Phase, phases, unnamed
 from coilset.model.results.files.opened import Run
-from coilset.model.results.records.labels import last_released, plain
+from coilset.model.results.records.labels import last_released, plain, within
 from coilset.model.results.records.working import number_name
 
 HEIGHT = 440  # pixels, the same for both, which stand side by side
@@ -34,9 +34,9 @@ def characteristic(run: Run) -> Panel:
     greatest, rate, set_mm = summary["force_max_N"], summary["rate_N_per_mm"], summary["set_mm"]
     opened, held = (summary.get(name) for name in ("open_rate_N_per_mm", "initial_tension_N"))
     if opened and held:  # the initial rate is that of coils that touch
-        start = _opening_travel(run, held)
+        start = -held / rate if rate else 0.0
         x = np.array([float(np.nanmin(run.data["travel_mm"].values)), start])
-        name = f"{held:.4g} N + {opened:.4g} N/mm · s from where the coils open"
+        name = f"{_held(summary)} + {opened:.4g} N/mm · s from where the coils open"
         traces.append(curve(x, opened * (x - start) - held, GREY, dash="dot", width=1.2, name=name))
     elif rate:
         travels = np.abs(run.data["travel_mm"].values)
@@ -121,17 +121,9 @@ def _curves(
         yield phase, part(travel, force, np.append(count[:1], count), first, last, closed)
 
 
-def _opening_travel(run: Run, held: float) -> float:
-    """Travel at which wound coils open, at F0 = `held` on the line from 0 through the first step of closed ones.
-
-    Without such a step it is that of the initial rate.
-    """
-    travel, force, contacts = (run.data[name].values for name in ("travel_mm", "force_N", "contacts"))
-    closed = np.flatnonzero((force < 0.0) & (contacts > 0))
-    if len(closed):
-        return -held * float(travel[closed[0]] / force[closed[0]])
-    rate = run.summary["rate_N_per_mm"]
-    return -held / rate if rate else 0.0
+def _held(summary: Mapping[str, Any], when: str = "") -> str:
+    """The initial tension, before or `_after` the last release, with its error."""
+    return within(summary[f"initial_tension{when}_N"], summary.get(f"estimated_initial_tension{when}_error_N"), "N", 2)
 
 
 def compressed(force: float) -> str:
@@ -144,7 +136,7 @@ def _outcome(summary: Mapping[str, Any]) -> str:
     set_mm, stays, released = summary["set_mm"], summary.get("load_losses") or [], last_released(summary)
     before, after = (summary.get(name) for name in ("initial_tension_N", "initial_tension_after_N"))
     if before and after:
-        return f", the initial tension falls from {plain(before)} to {plain(after)} N"
+        return f", the initial tension falls from {_held(summary)} to {_held(summary, '_after')}"
     if set_mm is None:
         return f", the spring loses {_lost(stays)}" if len(stays) == 1 else ""
     text = plain(set_mm)

@@ -1,6 +1,8 @@
 """Rates of a spring from its characteristic: as spring makers measure it, at given travels, in torsion and tension."""
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import dropwhile
 from typing import Any
 
@@ -11,6 +13,7 @@ from coilset.model.results.records.record import Result, Setup, Step
 from coilset.model.results.records.releases import Release, is_turned
 
 MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
+FEW = 3  # open steps that show a line and how it bends
 STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less changes nothing
 
 
@@ -113,35 +116,91 @@ def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, 
     return dict(zip(names, values, strict=True))
 
 
-def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
-    """Entries of the summary of a spring whose coils are wound onto each other: F0 before and after, N, and rate.
+@dataclass(frozen=True)
+class Held:
+    """The initial tension F0 of coils that are wound onto each other, where a curve bends as they open.
 
-    The line of an open spring, F = a + R s, by the first two steps without contact, and by the last two of the last
-    release, is followed back to that of the closed one, s = c F by the first step in which coils touch, or by the
-    initial rate: there F0 = a/(1 − R c). c is that of hooks and of coils that press on each other.
+    Attributes:
+        force: F0, N; rate: of the open spring beside it, N/mm; both None where they cannot be determined.
+        error: estimated size of the error of F0, N; None where it is not known.
+        points: open steps that show it.
     """
-    names = "initial_tension_N", "initial_tension_after_N", "open_rate_N_per_mm"
-    if not setup.wound_solid:
-        return dict.fromkeys(names)
-    pulled = [step for step in result.steps if step.force_N < 0.0 and not step.contacts]
-    before, rate = _line([step for step in pulled if step.phase == pulled[0].phase][:2] if pulled else [])
-    touching = next((step for step in result.steps if step.force_N < 0.0 and step.contacts), None)
-    closed = touching.travel_mm / touching.force_N if touching else 1.0 / result.rate if result.rate > 0.0 else 0.0
-    if before is not None and rate is not None:
-        before /= 1.0 - rate * closed
-    after = None
-    if release is not None:
-        back = [step for step in result.steps if step.phase == release.phase and not step.contacts]
-        after, back_rate = _line(back[-2:])
-        if after is not None and back_rate is not None:
-            after /= 1.0 - back_rate * closed
-    return dict(zip(names, (before, None if after is None else max(after, 0.0), rate), strict=True))
+
+    force: float | None = None
+    rate: float | None = None
+    error: float | None = None
+    points: int = 0
 
 
-def _line(steps: Sequence[Step]) -> tuple[float | None, float | None]:
-    """Pull at no travel, N, and rate, N/mm, of the line through two steps; None without two."""
-    if len(steps) < 2 or steps[0].travel_mm == steps[1].travel_mm:
-        return None, None
-    (a, f), (b, g) = ((step.travel_mm, step.force_N) for step in steps)
+def tensions(result: Result, release: Release | None) -> tuple[Held, Held | None]:
+    """F0 in the first pull, and by the last release, None without one; 0 if the coils stay open then.
+
+    The line of the open spring is that through the two open steps next to where the coils open or close. The line of
+    the closed one begins at the spring free of load, at the initial rate. They meet at F0. Closed coils stiffen a
+    little as they are pulled: what steps before the opening show of this counts as error.
+    """
+    steps, rate = result.steps, result.rate
+    opens = next((k for k, step in enumerate(steps) if _is_open(step)), len(steps))
+    closed = [one.force_N / one.travel_mm for one in steps[:opens] if one.travel_mm < 0.0]
+    if not rate > 0.0:  # or unknown: the first step in which coils touch shows it
+        rate = closed[0] if closed else math.nan
+    stiffest = max([rate, *closed])
+    first = _held(_going_on(steps[opens:]), 0.0, rate, stiffest)
+    if release is None:
+        return first, None
+    if not release.step.contacts:
+        return first, Held(0.0, None, 0.0, FEW)
+    back = list(dropwhile(lambda step: not _is_open(step), steps[release.step.number - 1 :: -1]))
+    return first, _held(_going_on(back), -release.step.travel_mm, rate, stiffest)
+
+
+def _is_open(step: Step) -> bool:
+    return step.force_N < 0.0 and not step.contacts
+
+
+def _going_on(steps: Sequence[Step]) -> list[Step]:
+    """The first open steps, of which each is longer than the one before; as many as show a line and its bend."""
+    found: list[Step] = []
+    for step in steps:
+        if len(found) == FEW or not _is_open(step) or (found and step.travel_mm >= found[-1].travel_mm):
+            break
+        found.append(step)
+    return found
+
+
+def _held(opened: Sequence[Step], free: float, closed: float, stiffest: float) -> Held:
+    """F0 by open steps, the nearest one first.
+
+    A third one shows how far the line bends on the way back to F0; with the error of the force this is that of F0.
+
+    Args:
+        opened: at most FEW of them.
+        free: extension of the spring free of load, mm.
+        closed, stiffest: rate of the closed coils, N/mm, and the greatest that steps show.
+    """
+    points = len(opened)
+    if points < 2 or not closed > 0.0:
+        return Held(points=points)
+    (a, f), (b, g) = ((-step.travel_mm - free, -step.force_N) for step in opened[:2])
     rate = (g - f) / (b - a)
-    return rate * a - f, rate
+    if rate >= closed:
+        return Held(points=points)
+    force, other = (max((f - rate * a) / (1.0 - rate / one), 0.0) for one in (closed, stiffest))
+    known = opened[0].estimated_force_error_N
+    if points < FEW or known is None:
+        return Held(force, rate, None, points)
+    c, h = -opened[2].travel_mm - free, -opened[2].force_N
+    bend = ((h - g) / (c - b) - rate) / (c - a) * (force / closed - a) * (force / closed - b)
+    return Held(force, rate, (abs(bend) + known) / (1.0 - rate / closed) + abs(force - other), points)
+
+
+def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
+    """Entries of the summary of a spring whose coils are wound onto each other; None of any other."""
+    first, after = tensions(result, release) if setup.wound_solid else (Held(), None)
+    return {
+        "initial_tension_N": first.force,
+        "estimated_initial_tension_error_N": first.error,
+        "initial_tension_after_N": after and after.force,
+        "estimated_initial_tension_after_error_N": after and after.error,
+        "open_rate_N_per_mm": first.rate,
+    }

@@ -131,9 +131,17 @@ class Summary:
     initial_tension_N: float | None = entry(
         "N",
         "F0 of coils that are wound onto each other: the line of the open spring in the first pull, back to "
-        "where it meets the line of the closed one; `null`, as the next two, without `spring.initial_tension`",
+        "where it meets the line of the closed one, which has the initial rate; `null`, as the next four, without "
+        "`spring.initial_tension`, and where no two steps show the line",
     )
-    initial_tension_after_N: float | None = entry("N", "F0 by the line of the last release; 0 if the coils stay open")
+    estimated_initial_tension_error_N: float | None = entry(
+        "N",
+        "estimated size of its error, by that of the force and by how the line bends; `null` with fewer steps than 3",
+    )
+    initial_tension_after_N: float | None = entry(
+        "N", "F0 by the line of the last release, and that of closed coils from where it ends; 0 if the coils stay open"
+    )
+    estimated_initial_tension_after_error_N: float | None = entry("N", "the same of that one")
     open_rate_N_per_mm: float | None = entry("N/mm", "rate once the coils are open, in the first pull")
     plastic_work_max_N_per_mm2: float = entry("N/mm²", "maximum plastic work b* on the surface", in_slice=True)
     plastic_work_max_turn: float | None = entry("turns", "its turn")

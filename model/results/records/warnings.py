@@ -8,6 +8,7 @@ from coilset.model.base.warning import Warning
 from coilset.model.results.fatigue import fatigue_warnings
 from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
+from coilset.model.results.records.rates import FEW, tensions
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 from coilset.model.results.records.releases import FREE, is_turned, last_release
 from coilset.model.results.records.units import unit_of
@@ -358,6 +359,21 @@ def _longer(setup: Setup, result: Result) -> Iterator[Warning]:
     yield Warning("negative set", "set", message, release.set, 0.0, "mm")
 
 
+def _tension(setup: Setup, result: Result) -> Iterator[Warning]:
+    """Of wound coils whose opening too few steps show."""
+    if not (setup.wound_solid and result.complete and any(step.force_N < 0.0 for step in result.steps)):
+        return
+    first, after = tensions(result, last_release(setup, result))
+    for held, when in ((first, "first pull"), (after, "last release")):
+        if held is not None and held.points < FEW:
+            state = "cannot be determined" if held.force is None else "has no known error"
+            message = (
+                f"the initial tension of the {when} {state}: coils are open in {held.points} of its steps, {FEW} "
+                "are needed; give more steps, or pull further"
+            )
+            yield Warning("initial tension", when, message, held.points, FEW)
+
+
 def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
     """Of a program that goes to block and comes back, if the spring sets: an elastic spring is not preset."""
     release, spring = last_release(setup, result), setup.spring
@@ -375,6 +391,7 @@ FOUND: tuple[Check, ...] = (
     _errors,
     _presetting,
     _longer,
+    _tension,
     working_warnings,
     fatigue_warnings,
 )
