@@ -261,6 +261,7 @@ def test_all_figures_share_one_look():
     [
         ({"set_mm": 1.25}, "the spring sets 1.25 mm"),
         ({"set_mm": -1e-13}, "the spring sets 0 mm"),
+        ({"set_mm": 0.006532, "estimated_set_error_mm": 0.0066}, "the spring sets 0.007 mm"),
         ({"set_mm": -0.177, "force_max_N": -9.0}, "the spring stays 0.177 mm longer"),
         (
             {"set_mm": None, "load_losses": [{"loss_percent": 17.05, "height_mm": 30.12}]},

@@ -9,7 +9,7 @@ from coilset.model.base.between_steps import UNKNOWN, Between, closed_rate, part
 from coilset.model.figures.panels.panel import COLOURS, GREY, Panel, axis, curve, upright
 from coilset.model.figures.panels.phases import Phase, phases, unnamed
 from coilset.model.results.files.opened import Run
-from coilset.model.results.records.labels import last_released, plain, within
+from coilset.model.results.records.labels import MOST_DECIMALS, last_released, plain, within
 from coilset.model.results.records.working import number_name
 
 HEIGHT = 440  # pixels, the same for both, which stand side by side
@@ -50,7 +50,7 @@ def characteristic(run: Run) -> Panel:
     if greatest < 0.0:
         layout = {"annotations": []}
     if set_mm and not opened:  # an extension spring sets in its initial tension first
-        layout["annotations"] += _arrow(set_mm, block)
+        layout["annotations"] += _arrow(summary, block)
     return Panel(
         "characteristic",
         finding,
@@ -139,7 +139,7 @@ def _outcome(summary: Mapping[str, Any]) -> str:
         return f", the initial tension falls from {_held(summary)} to {_held(summary, '_after')}"
     if set_mm is None:
         return f", the spring loses {_lost(stays)}" if len(stays) == 1 else ""
-    text = plain(set_mm)
+    text = _set(summary)
     left = f", the spring stays {text[1:]} mm longer" if text.startswith("-") else f", the spring sets {text} mm"
     if released is None:
         return left
@@ -151,10 +151,16 @@ def _lost(stays: Sequence[Mapping[str, Any]]) -> str:
     return f"{plain(stays[0]['loss_percent'])} % of its load at {stays[0]['height_mm']:.4g} mm"
 
 
-def _arrow(set_mm: float, block: float) -> list[dict[str, Any]]:
+def _set(summary: Mapping[str, Any]) -> str:
+    """The set, mm, in at most four digits that its error allows."""
+    set_mm, error = summary["set_mm"], summary.get("estimated_set_error_mm")
+    return plain(set_mm if error is None else float(within(set_mm, error, "mm", MOST_DECIMALS).split()[0]))
+
+
+def _arrow(summary: Mapping[str, Any], block: float) -> list[dict[str, Any]]:
     """Annotations of the set; behind the arrow where that is short beside the travel to block."""
+    set_mm, text = summary["set_mm"], f"set {_set(summary)} mm".replace("-", "−")
     ends = {"x": set_mm, "ax": 0, "y": 0, "ay": 0, "axref": "x", "ayref": "y", "text": "", "showarrow": True}
-    text = f"set {plain(set_mm)} mm".replace("-", "−")
     place: dict[str, Any] = {"x": 0.5 * set_mm}
     if abs(set_mm) < SHORT * block:
         place = {"x": max(set_mm, 0.0), "xanchor": "left"}
