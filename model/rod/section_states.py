@@ -70,8 +70,7 @@ class SectionStates:
         """Write the section tangents at the trial strains of a law that holds where κ sets in; as `Sections.update`."""
         sections, strain = copy.copy(self._sections), self._strain.trial
         sections.law_over_time = sections.law_over_time.held()
-        end = self._on_the_way | {name: self._on_the_way[name].copy() for name in self.bearing}
-        end.pop(KNOWN, None)
+        end = {name: values.copy() for name, values in self._on_the_way.items() if name != KNOWN}
         return bool(sections.update(strain, self._start, end, np.empty(strain.shape), D))
 
     def follow(self) -> None:

@@ -61,9 +61,8 @@ STILL = 1e-9  # of the free length: a step of less travel is one of force or tim
 # springs with 8, 16 and 64 elements per turn the error at 16 was 0.00 to 0.7 of the difference of the forces, 0.01 to
 # 1.8 of that of the sets, 0.05 to 0.9 of that of the residual stresses.
 FORCE, SET, SHEAR = 0.75, 1.0, 1.0
-RATE = (
-    1.0  # that of the initial rate was 0.3 to 0.5 of the difference in springs with closed ends, 1.8 in a double cone
-)
+# That of the initial rate was 0.3 to 0.5 of the difference where ends are closed, 1.8 in a double cone, both with 16.
+RATE = 1.0
 SECTION = 1.25  # of the difference to the finer rule, which has an error of its own
 RIGID = 1.5  # of dU/ds: with forty times the bedding, forces of seven springs rose by 0.9 to 1.5 times as much
 TAKEN = 0.9  # part of the travel that the bedding takes at most: beyond, the force has no limit with rigid contacts

@@ -11,8 +11,8 @@ Nothing works on w, so that ∫ σ : δε g dA = s · δe for all δe, δw. w is
 the six rigid modes, which would only rename Γ and K: ∫ w dA = 0, ∫ r × w dA = 0. Newton's method finds the a at given
 e, and the section tangent follows by condensation, D = D_ee − D_ea D_aa⁻¹ D_ae. The spin of the increment is left out.
 
-The iteration begins where the slope da/de of a known warping leads, the one at the last equilibrium or the one found
-last on the way from it, whose strains are nearer. Stresses and resultants are a function of the state at the last
+The iteration begins where the slope da/de of the last equilibrium leads, or that of the last trial, whichever has the
+nearer strains. Stresses and resultants are a function of the state at the last
 equilibrium and of the strains, whatever was tried in between, but for the tolerance of the warping.
 """
 
@@ -147,7 +147,7 @@ class WarpingSections:
     ) -> bool:
         """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent.
 
-        Where `trial` has no `warping_strain`, nothing is known of its warping.
+        Without `warping_strain` in `trial` the iteration begins at the last equilibrium.
         """
         place, law, known = self.placement, self.law_over_time.over(start, trial), trial.get(KNOWN, np.array(np.nan))
         good = self.threads.run(
@@ -255,17 +255,19 @@ def update_sections(
             P, of = placement[c, g], place(at, at.number[c, g], inverse, dA)
             to_section(P, de[c, g], w.step)
             to_section(P, way[c, g], near)
-            good = False
-            if _length(of.bend.R, near) < _length(of.bend.R, w.step):
-                _lead(slope[c, g], near, a[c, g])
-                good = find_warping(law, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
-            for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
-                if not good:
+            good, first = False, 0 if _length(of.bend.R, near) < _length(of.bend.R, w.step) else 1
+            # from where the slope of the last trial leads, else that of the last equilibrium, else from there itself
+            for attempt in range(first, 3):
+                if attempt == 0:
+                    _lead(slope[c, g], near, a[c, g])
+                else:
                     for m in range(n):
                         a[c, g, m] = old_a[c, g, m]
-                    if follow > 0.0:
-                        _lead(old_slope[c, g], w.step, a[c, g])
-                    good = find_warping(law, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
+                if attempt == 1:
+                    _lead(old_slope[c, g], w.step, a[c, g])
+                good = find_warping(law, of, elastic, old[c, g], old_a[c, g], a[c, g], new[c, g], w, count[part])
+                if good:
+                    break
             if not good:
                 return False
             slopes(w, slope[c, g])
