@@ -89,7 +89,7 @@ def estimated(analysis: LoadHistory) -> Result:
         log.info("mesh, section and contact: errors not estimated, the companion on half of the elements: %s", error)
         errors = RunErrors(_of_steps(analysis.setup, result), *[NOT_KNOWN] * 4)
         return replace(without_errors(result), errors=errors)
-    judged = _judged(analysis, companion, watch.seen, surfaces) if comm.rank == 0 else None
+    judged = _judged(analysis, companion, watch, surfaces) if comm.rank == 0 else None
     steps, errors = comm.bcast(judged)
     working = result.working and result.working.with_errors(others)
     of_rate = RATE * abs(result.rate - companion.result.rate)
@@ -248,7 +248,8 @@ class _Watch:
         if outline and keeps_elastic_warping(case, companion.spring) and warping_can_be_estimated(case, law):
             finer = outline.rule(max(WARPING_POINTS, len(rule)))
             self.warping = _Followed(companion, WARPING, "warping", finer, WARPING_DEGREE)
-        self.travel, self.greatest, self.seen = 0.0, 0.0, list[_Seen]()
+        self.travel, self.greatest, self.torque = 0.0, 0.0, 0.0
+        self.seen, self.at = list[_Seen](), dict[tuple[int, float], int]()
 
     def __call__(self, step: Step) -> None:
         travel, self.travel = step.travel_mm - self.travel, step.travel_mm
@@ -261,9 +262,11 @@ class _Watch:
             counted = part.bears & layout.begins_here(part.dofs)  # contacts that join two ranks' parts are on both
             energy += 0.5 * float(part.pressure[counted] @ part.penetration[counted])
         energy, force = sum_of_ranks(self.comm, energy), abs(step.force_N)
-        self.greatest = max(self.greatest, force)
+        self.greatest, self.torque = max(self.greatest, force), max(self.torque, abs(step.torque_Nmm))
         taken = 2.0 * energy / force if force > FREE * self.greatest else 0.0
-        self.seen.append(_Seen(step, section, warping, energy, taken))
+        if not (self.seen and step.rests(self.seen[-1].step, self.greatest, self.torque)):
+            self.seen.append(_Seen(step, section, warping, energy, taken))
+        self.at[_place(step)] = len(self.seen) - 1
 
     def surface_errors(self) -> tuple[float, float]:
         """Errors of the shear stress at the inside by the section rule and by elastic warping, MPa; collective."""
@@ -279,21 +282,22 @@ class _StepErrors:
 
 
 def _judged(
-    analysis: LoadHistory, companion: LoadHistory, seen: Sequence[_Seen], surfaces: tuple[float, float]
+    analysis: LoadHistory, companion: LoadHistory, watch: _Watch, surfaces: tuple[float, float]
 ) -> tuple[tuple[Step, ...], RunErrors]:
     """The steps with their total errors, and the errors of the run's numbers; on rank 0."""
-    setup, result = analysis.setup, analysis.result
-    at = {_place(one.step): k for k, one in enumerate(seen)}
-    steps, found = [], []
+    setup, result, seen = analysis.setup, analysis.result, watch.seen
+    steps, found = list[Step](), list[_StepErrors]()
+    greatest, torque = result.greatest_force, max((abs(step.torque_Nmm) for step in result.steps), default=0.0)
     force = travel = 0.0
     stiffness = result.rate
     for step in result.steps:
         way = step.travel_mm - travel
-        if abs(way) > STILL * analysis.spring.free_length and step.force_N != force:
+        rests = bool(steps) and step.rests(steps[-1], greatest, torque)
+        if not rests and abs(way) > STILL * analysis.spring.free_length and step.force_N != force:
             stiffness = abs((step.force_N - force) / way)
         force, travel = step.force_N, step.travel_mm
-        one = _step_errors(step, seen, at.get(_place(step)), stiffness)
-        found.append(one)
+        found.append(found[-1] if rests else _step_errors(step, seen, watch.at.get(_place(step)), stiffness))
+        one = found[-1]
         own = step.steps_force_error_N, step.steps_height_error_mm
         totals = [_total(mine, others) for mine, others in zip(own, (one.forces, one.heights), strict=True)]
         steps.append(replace(step, estimated_force_error_N=totals[0], estimated_height_error_mm=totals[1]))
@@ -361,9 +365,10 @@ def _by_contact(seen: Sequence[_Seen], release: Release) -> float | None:
 
 
 def _shear_slope(setup: Setup, result: Result, release: Release) -> float:
-    """Change of the shear stress at the inside over the height of the release, MPa/mm."""
+    """Change of the shear stress at the inside over the height of the release, MPa/mm; 0 of one that was not loaded."""
     number = next(k for k, shot in enumerate(result.snapshots) if shot is release.snapshot)
-    loaded = result.snapshots[number - 1]
+    free = FREE * result.greatest_force
+    loaded = next((shot for shot in result.snapshots[number - 1 :: -1] if abs(shot.force) > free), release.snapshot)
     way = release.step.seat_height_mm - loaded.height
     return abs((shear_inside(setup, release.snapshot)[0] - shear_inside(setup, loaded)[0]) / way) if way else 0.0
 

@@ -83,7 +83,7 @@ class Recorder:
         """
         x, weakest = self.layout.gather(self.rod.x), self._weakest()
         greatest = max(self.result.greatest_force, abs(self.control.force))
-        step = self._step(phase, taken, loading, x, weakest, greatest)
+        step = self._as_wrong_as_before(self._step(phase, taken, loading, x, weakest, greatest))
         if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
             mode = BucklingMode(
                 step.travel_mm, step.force_N, weakest.value, x, self._stability.displacements(weakest.mode)
@@ -191,6 +191,15 @@ class Recorder:
             value if math.isfinite(value) else None for value in (outcome.estimate.force, outcome.estimate.height)
         )
         return force, height
+
+    def _as_wrong_as_before(self, step: Step) -> Step:
+        """The step; one that changes nothing has the errors by the step size of the one before."""
+        steps = (*self.result.steps, step)
+        force, torque = (max(abs(getattr(one, name)) for one in steps) for name in ("force_N", "torque_Nmm"))
+        if len(steps) == 1 or not step.rests(steps[-2], force, torque):
+            return step
+        names = "steps_force_error_N", "steps_height_error_mm"
+        return replace(step, **{name: getattr(steps[-2], name) for name in names})
 
     def _weakest(self) -> Weakest | None:
         """Weakest of the tangent, for a spring slender enough to buckle, until it buckles; else None; collective."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from coilset.model.base.between_steps import Between, part
 from coilset.model.results.records.record import Result, Setup, Step
-from coilset.model.results.records.releases import Release, is_turned
+from coilset.model.results.records.releases import FREE, Release, is_turned
 
 MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
 FEW = 3  # open steps that show a line and how it bends
@@ -102,7 +102,8 @@ def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, 
     first = next(step for step in steps if step.turn_deg)
     after = None
     if release is not None:
-        loaded = [step for step in steps if step.phase < release.phase]
+        faint = FREE * max(abs(step.torque_Nmm) for step in steps)
+        loaded = [step for step in steps if step.phase < release.phase and abs(step.torque_Nmm) > faint]
         if loaded and loaded[-1].turn_deg != release.step.turn_deg:
             freed = loaded[-1].turn_deg - release.step.turn_deg
             after = (loaded[-1].torque_Nmm - release.step.torque_Nmm) / freed

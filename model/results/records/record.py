@@ -19,6 +19,8 @@ from coilset.model.rod.elements import Element
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
 
+AT_REST = 1e-6  # of the greatest force and torque so far, and of the height: what changes by less stays as it is
+
 
 @dataclass(frozen=True)
 class Step:
@@ -83,6 +85,23 @@ class Step:
     load_loss_percent: float | None = None
     turn_deg: float = 0.0
     torque_Nmm: float = 0.0
+
+    def rests(self, before: "Step", force: float, torque: float) -> bool:
+        """Whether it neither loads nor relaxes the spring, so that what was wrong before it is as wrong after it.
+
+        A spring free of load may move between its seats, where weak springs hold its tips.
+
+        Args:
+            before: the step before it.
+            force, torque: largest magnitudes so far, N and N mm.
+        """
+        turned = abs(self.torque_Nmm - before.torque_Nmm) > AT_REST * torque
+        if self.hours != before.hours or (turned and not (self.lift_off_mm or before.lift_off_mm)):
+            return False
+        if max(abs(self.force_N), abs(before.force_N)) <= AT_REST * force:
+            return True
+        height = abs(self.seat_height_mm - before.seat_height_mm)
+        return abs(self.force_N - before.force_N) <= AT_REST * force and height <= AT_REST * self.seat_height_mm
 
 
 @dataclass(frozen=True)
