@@ -15,7 +15,7 @@ __all__ = ["WORD_OR_NUMBER", "Strict", "Whole", "check_entries", "explain", "sho
 Group = TypeVar("Group", bound=Strict)
 
 LONGEST = 60  # characters of a value or a name in a message
-OWN = ("unknown_entry", "missing_entry")  # errors that name their entry themselves
+OWN = ("unknown_entry", "missing_entry", "wrong_option")  # errors that name their entry themselves
 TEXTS = {  # what would be right, where pydantic's messages are meant for programmers
     "dict_type": "must be a group of entries, as in {name: value}",
     "list_type": "must be a list, as in [1, 2]",

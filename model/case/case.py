@@ -7,7 +7,17 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from annotated_types import Unit
-from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
 
 from coilset.meshes.springs.spring import PAST, SpringEntry, SpringSpec
 from coilset.meshes.springs.stations import ElementsPerTurn
@@ -22,6 +32,7 @@ from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
 from coilset.model.case.sheet import SheetSpec
 from coilset.model.case.working import WorkingSpec
+from coilset.model.equilibrium import petsc_options
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
@@ -219,6 +230,17 @@ Option = Annotated[bool | int | float | str | None, BeforeValidator(_one_value)]
 """Value of a PETSc option."""
 
 
+def _plain(options: dict[str, Any]) -> dict[str, Any]:
+    """Options as PETSc gets them, of those that a file may give."""
+    found = {}
+    for name, value in options.items():
+        try:
+            found[name] = petsc_options.plain(name, value)
+        except ValueError as error:
+            raise PydanticCustomError("wrong_option", "{problem}", {"entry": name, "problem": str(error)}) from None
+    return found
+
+
 class SolverSpec(Strict):
     """How equilibrium is found."""
 
@@ -226,8 +248,9 @@ class SolverSpec(Strict):
     tolerance: Annotated[float, Unit("1"), Field(gt=0, lt=1, description="ε of the convergence test (6.3.1)")] = 1e-9
     options: Annotated[
         dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], Option],
+        AfterValidator(_plain),
         Unit("of the option"),
-        Field(description="PETSc options, without the leading hyphen; they take precedence"),
+        Field(description="PETSc options of docs/methods.md, without the leading hyphen; they take precedence"),
     ] = Field(default_factory=dict)
     control: ControlSpec = ControlSpec()
 
