@@ -10,6 +10,8 @@ import numpy as np
 
 from coilset.model.runtime.kernels import njit
 
+NEARLY_BACK = -0.9  # cosine of the angle from which on the symmetric part of a rotation gives its axis
+
 
 @njit(cache=True)
 def exponential(v: np.ndarray, R: np.ndarray) -> None:
@@ -36,14 +38,32 @@ def exponential(v: np.ndarray, R: np.ndarray) -> None:
 
 @njit(cache=True)
 def logarithm(R: np.ndarray, v: np.ndarray) -> None:
-    """Write into `v` the rotation vector of the matrix `R`, for angles below π."""
+    """Write into `v` the rotation vector of the matrix `R`, of an angle up to π; at π itself one of the two.
+
+    The antisymmetric part of R = 1 + sin α [n] + (1 − cos α)(n nᵀ − 1) gives the axis n, unless the sine is small
+    beside α: then the symmetric part does, but for its sign.
+    """
     x, y, z = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]  # 2 sin(angle) times the axis
     sine = 0.5 * math.sqrt(x * x + y * y + z * z)
     cosine = 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0)
     angle = math.atan2(sine, cosine)
-    # angle / (2 sin angle); series where sine and angle vanish together
-    factor = 0.5 + angle * angle / 12.0 + 7.0 * angle**4 / 720.0 if angle < 1e-3 else 0.5 * angle / sine
-    v[0], v[1], v[2] = factor * x, factor * y, factor * z
+    if cosine > NEARLY_BACK:
+        # angle / (2 sin angle); series where sine and angle vanish together
+        factor = 0.5 + angle * angle / 12.0 + 7.0 * angle**4 / 720.0 if angle < 1e-3 else 0.5 * angle / sine
+        v[0], v[1], v[2] = factor * x, factor * y, factor * z
+        return
+    k = 0
+    for i in range(1, 3):
+        if R[i, i] > R[k, k]:
+            k = i
+    for i in range(3):  # (1 − cos α) n[k] n, with |n[k]| > 1/2
+        v[i] = 0.5 * (R[i, k] + R[k, i])
+    v[k] -= cosine
+    factor = angle / math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+    if v[0] * x + v[1] * y + v[2] * z < 0.0:
+        factor = -factor
+    for i in range(3):
+        v[i] *= factor
 
 
 @njit(cache=True)

@@ -15,6 +15,7 @@ from coilset.model.equilibrium.path.continuation import Continuation
 from coilset.model.equilibrium.path.stability import mode_in_words, negative_pivots
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Drag
+from coilset.model.equilibrium.system.system import Evaluation
 from coilset.model.results.records.buckling import axis_offset, buckling, critical_travel, vanishing
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
@@ -86,6 +87,22 @@ def test_the_weakest_mode_is_the_lowest_and_not_the_nearest_to_zero():
         weakest = analysis.stability.weakest(at)
         assert weakest.negative == (values[0] < 0.0)
         assert weakest.value == pytest.approx(values[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("has_stress", [False, True])
+def test_a_state_without_a_tangent_has_no_weakest_mode(has_stress):
+    """Where the law finds no stress nothing touches the seats either, and a head that is free to move resists nothing:
+    a pivot of zero, after which LAPACK was given numbers that are none. A release went on from such a state."""
+    analysis = pressed(2.0, 1, mesh=4, ends="seats", spring=LONG | {"turns": 3})
+    analysis.run()
+    analysis.system.restore()
+    load = analysis.control.to_force(1.0)
+    assert np.isfinite(analysis.stability.weakest(load).value)
+    analysis.system.last = Evaluation(analysis.system.last.increments, has_stress, [])
+    weakest = analysis.stability.weakest(load)
+    assert weakest.negative == analysis.stability.negative_pivots(load) == 0
+    assert np.isnan(weakest.value)
+    assert not np.isfinite(analysis.stability.displacements(weakest.mode)).any()
 
 
 def test_what_gives_way_is_named():

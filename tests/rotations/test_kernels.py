@@ -6,9 +6,10 @@ from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 from coilset.model.rotations import kernels
-from coilset.model.rotations.vectors import cross_matrix
+from coilset.model.rotations.vectors import cross_matrix, nearest_vector, rotation_matrix
 
-ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 9.9e-4, 1.1e-3, 0.3, 2.0, 3.1, np.pi - 1e-6]
+ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 9.9e-4, 1.1e-3, 0.3, 2.0, 2.69, 2.7, 3.1]
+ANGLES += [np.pi - part for part in (1e-6, 1e-9, 1e-12)]
 EPS = np.finfo(float).eps
 
 
@@ -30,12 +31,30 @@ def test_exponential_agrees_with_scipy(angle):
 
 @pytest.mark.parametrize("angle", ANGLES)
 def test_logarithm_undoes_the_exponential(angle):
-    """To rounding, which near π grows as ε/(π − α): the sine of the angle, which gives the axis, vanishes there."""
+    """To rounding, also near π, where the sine of the angle, which gives the axis elsewhere, vanishes."""
     for v in vectors(angle):
         R, back = np.empty((3, 3)), np.empty(3)
         kernels.exponential(v, R)
         kernels.logarithm(R, back)
-        np.testing.assert_allclose(back, v, rtol=0, atol=20.0 * EPS * angle * max(1.0, 1.0 / (np.pi - angle)))
+        np.testing.assert_allclose(back, v, rtol=0, atol=20.0 * EPS * angle)
+
+
+@pytest.mark.parametrize("axis", [*np.eye(3), *np.array([[1.0, -1.0, 0.0], [0.0, 3.0, -4.0], [1.0, 2.0, -2.0]])])
+def test_a_half_turn_has_one_of_its_two_vectors(axis):
+    """R = 2 n nᵀ − 1, symmetric to the last bit: nothing in it says which of π n and −π n is meant."""
+    n, back = axis / np.linalg.norm(axis), np.empty(3)
+    kernels.logarithm(2.0 * np.outer(n, n) - np.eye(3), back)
+    np.testing.assert_allclose(back * np.sign(back @ n), np.pi * n, rtol=0, atol=20.0 * EPS)
+
+
+@pytest.mark.parametrize("axis", [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.1, -0.2, 1.0]])
+def test_the_nearest_vector_follows_a_rotation_through_any_number_of_half_turns(axis):
+    """In steps of 18°, the tenth of which is a half turn to the last digit."""
+    n, now = np.array(axis) / np.linalg.norm(axis), np.zeros(3)
+    for step in range(1, 81):
+        there = np.radians(18.0 * step) * n
+        now = nearest_vector(rotation_matrix(there), now)
+        np.testing.assert_allclose(now, there, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("angle", [1e-12, 1e-5, 5e-3, 0.02, 0.7, 2.5, 3.1415, 6.0])

@@ -10,6 +10,7 @@ grows by μ c with the penetration and not with the slip, makes it indefinite by
 the solution of M ẋ = −K x does, where a real eigenvalue of K passes zero; those nearest to zero are counted then.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,7 +59,8 @@ class Stability:
             return 0
         if not self.system.is_symmetric:
             return self.weakest(load).negative
-        return _negative(self._factors(load))
+        factors = self._factors(load)
+        return 0 if factors is None else _negative(factors)
 
     def weakest(self, load: Load) -> Weakest:
         """The weakest mode at the last evaluation; collective.
@@ -66,8 +68,15 @@ class Stability:
         Inverse iteration finds the eigenvalues nearest to zero. Where more of them are negative than it has found, as
         of a coil on the edge of another, it goes on with a matrix that is shifted until all of its are positive: the
         lowest ones are then the nearest.
+
+        Where the law has found no stress, or the factors end at a pivot of zero, nothing is found: no negative one, and
+        neither value nor mode is a number.
         """
         factors = self._factors(load)
+        if factors is None:
+            nothing = self.layout.vector()
+            nothing.set(math.nan)
+            return Weakest(0, math.nan, nothing)
         matrix, scale = self._matrix, self.layout.vector(self.weights(load))
         values, block = self._nearest(factors, scale)
         found = int(np.count_nonzero(values < 0.0))
@@ -99,8 +108,10 @@ class Stability:
 
     # ---- matrix ----------------------------------------------------------------------------------------------------
 
-    def _factors(self, load: Load) -> PETSc.PC:
-        """Factors of the tangent at the last evaluation; without friction those of its symmetric part."""
+    def _factors(self, load: Load) -> PETSc.PC | None:
+        """Factors of the tangent at the last evaluation, without friction those of its symmetric part; None without."""
+        if not self.system.last.has_stress:
+            return None
         tangent, symmetric = self.iteration.matrix, self.system.is_symmetric
         with self.system.body.judged():
             self.system.last_tangent(load, tangent, at_step_start=True)
@@ -115,7 +126,7 @@ class Stability:
         matrix.setOption(PETSc.Mat.Option.SYMMETRIC, symmetric)
         factors = lu(matrix, tangent.ordering)
         factors.setUp()
-        return factors
+        return None if factors.getFailedReason() else factors
 
     def weights(self, load: Load) -> np.ndarray:
         """Of this rank's free unknowns in a mode's norm, see Layout; 0 of the others."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from coilset.model.base.between_steps import Between, part
 from coilset.model.results.records.record import Result, Setup, Step
-from coilset.model.results.records.releases import FREE, Release, is_turned
+from coilset.model.results.records.releases import FREE, LEAST_TURN, Release, is_turned
 
 MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
 FEW = 3  # open steps that show a line and how it bends
@@ -99,7 +99,7 @@ def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, 
     if not is_turned(setup, result.steps):
         return dict.fromkeys(names)
     steps = result.steps
-    first = next(step for step in steps if step.turn_deg)
+    first = next(step for step in steps if abs(step.turn_deg) > LEAST_TURN)
     after = None
     if release is not None:
         faint = FREE * max(abs(step.torque_Nmm) for step in steps)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 
 TURNED = 2.0  # torque over force times coil radius from which a spring is loaded by the torque about its axis
+LEAST_TURN = 1e-6  # degrees: a spring that is turned by less is not turned, but for rounding
 FREE = 1e-6  # of the maximum force so far: a spring under less is free of load
 
 
@@ -46,8 +47,10 @@ def last_release(setup: Setup, result: Result) -> Release | None:
 
 def is_turned(setup: Setup, steps: Sequence[Step]) -> bool:
     """Whether a run loads its spring by a torque about the axis, as a torsion spring, and not by a force along it."""
-    torque, force = (max((abs(getattr(one, name)) for one in steps), default=0.0) for name in ("torque_Nmm", "force_N"))
-    return torque > TURNED * 0.5 * setup.mean_diameter * force
+    turn, torque, force = (
+        max((abs(getattr(one, name)) for one in steps), default=0.0) for name in ("turn_deg", "torque_Nmm", "force_N")
+    )
+    return turn > LEAST_TURN and torque > TURNED * 0.5 * setup.mean_diameter * force
 
 
 def load_of(setup: Setup, steps: Sequence[Step]) -> Callable[[Step], float]:
