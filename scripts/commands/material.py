@@ -29,6 +29,10 @@ RELAXATION = typer.Argument(
     help="relaxation tests (CSV): columns hours, temperature, loss, stress or shear_stress; or force of a spring, "
     "whose case file (YAML) follows"
 )
+KNOWN = typer.Option([], metavar="NAME=VALUE", help="offset or compliance of the tester that is given")
+UNKNOWN = typer.Option(
+    [], metavar="NAME", help="take offset (slack) or compliance of the tester off, by the straight part of each test"
+)
 POINT_ERROR = 0.5  # % of the load, with which a point is read off a printed diagram
 OUT = typer.Option(None, callback=folder_target, help="results folder [default: results/material/NAME]")
 FORCE = typer.Option(False, *OVERWRITE, help="overwrite existing files")
@@ -127,6 +131,8 @@ def fit(
         None, "--back-stresses", help="number of back stresses (Chaboche), 1 to 4, to fit to cyclic tension or torsion"
     ),
     engineering: bool = typer.Option(False, "--engineering", help="tension tests have engineering strain and stress"),
+    known: list[str] = KNOWN,
+    tester: list[str] = UNKNOWN,
     name: str = typer.Option("fitted", help="name of the material"),
     out: str = OUT,
     force: bool = FORCE,
@@ -140,12 +146,16 @@ def fit(
 
     from coilset.model.material.identification import cyclic, experiments, figures
     from coilset.model.material.identification import fit as fitting
+    from coilset.model.material.identification.elastic_part import corrected
     from coilset.model.material.law.file import UNITS
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
     file, picture = files_to_write(out, name, force, f"{name}.yaml", "fit.png")
-    tests = [experiments.read_test(path, engineering) for path in data]
+    given = springs.known_values(known)
+    tests = [corrected(experiments.read_test(path), shear_modulus, poisson, given, tester) for path in data]
+    if engineering:
+        tests = [experiments.true_test(test) for test in tests]
     if back_stresses is None:
         result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
     else:
@@ -161,6 +171,8 @@ def fit(
         console.print(f"{many} would do: the others are within the scatter")
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} MPa")
+    for sentence in result.tester:
+        console.print(sentence, soft_wrap=True)
     for misfit in result.misfits:
         console.warn(misfit)
     if result.doubtful:

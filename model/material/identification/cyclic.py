@@ -22,8 +22,8 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
 from coilset.model.base.errors import InputError
+from coilset.model.material.identification.elastic_part import check_elastic
 from coilset.model.material.identification.experiments import Test
-from coilset.model.material.identification.fit import check_units
 from coilset.model.material.identification.result import Fit, coverage, robust_covariance, spread
 from coilset.model.runtime.kernels import KERNEL, njit
 
@@ -143,7 +143,7 @@ def fit_back_stresses(tests: Iterable[Test], G: float, nu: float, terms: int, te
         if test.kind not in AXIS:
             problem = "is a test of both tension and torsion; back stresses are fitted to tests in one direction"
             raise test.error(problem)
-        check_units(test, float(G), float(nu))
+        check_elastic(test, float(G), float(nu))
     paths = [_path(test, G, nu) for test in tests]
     _refuse_one_way(paths)
     found, enough, best = None, 1, math.inf

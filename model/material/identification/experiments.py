@@ -1,7 +1,8 @@
 """Laboratory tests of a material: strain paths and measured stresses, read from CSV files."""
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ COLUMNS = ("eps11", "gamma12", "sigma11", "tau12")
 SHEAR = ("gamma12", "tau12")  # a tension test may leave these columns out
 PLAIN = {"eps11": "strain", "sigma11": "stress"}  # and may have these names, which a table of hardening has
 COMPONENTS = {"tension": [0], "torsion": [1], "combined": [0, 1]}  # of strain and stress that a kind of test loads
+PULLED = 0.1  # of its least stress, which a test that is pulled has as its greatest at least
 LARGEST_STRAIN = 2.0  # of a test; above it the numbers are per cent
 
 
@@ -22,6 +24,7 @@ class Test:
 
     Attributes:
         file: that it was read from, for messages; by default its name.
+        tester: offset and compliance that were taken off its strain, or given; see `elastic_part.TESTER`.
     """
 
     __test__ = False  # not a test of pytest
@@ -29,6 +32,7 @@ class Test:
     strain: np.ndarray
     stress: np.ndarray
     file: str = ""
+    tester: Mapping[str, float] = field(default_factory=dict)
 
     def error(self, problem: str) -> InputError:
         """That something is wrong with it."""
@@ -75,15 +79,23 @@ def read_test(path: str | Path, engineering: bool = False) -> Test:
     if largest > LARGEST_STRAIN:
         raise InputError(f"goes up to {largest:g}; give strain as a number, 0.02 for 2 %", "strain", str(table.path))
     test = Test(table.path.stem, values[:, :2], values[:, 2:], str(table.path))
-    return _true(test, table.path) if engineering else test
+    return true_test(test) if engineering else test
 
 
-def _true(test: Test, path: Path) -> Test:
-    """A tension test from engineering strain and stress, up to its maximum force."""
+def true_test(test: Test) -> Test:
+    """A tension test from engineering strain and stress, up to its maximum force.
+
+    Raises:
+        InputError: another test, or one whose stresses are negative.
+    """
+    file, most, least = test.file or test.name, test.stress[:, 0].max(), test.stress[:, 0].min()
     if test.kind != "tension":
-        raise InputError(
-            "is not a tension test; only tension tests have engineering strain and stress", "--engineering", str(path)
-        )
+        problem = "is not a tension test; only tension tests have engineering strain and stress"
+        raise InputError(problem, "--engineering", file)
+    if most < PULLED * -least:
+        problem = f"its stresses are negative, down to {least:.4g} N/mm², as in compression"
+        hint = "give a tension test with positive signs, or true strain and stress without --engineering"
+        raise InputError(f"{problem}; {hint}", "--engineering", file)
     end = int(test.stress[:, 0].argmax()) + 1
     strain, stress = test.strain[:end].copy(), test.stress[:end].copy()
     stress[:, 0] *= 1 + strain[:, 0]

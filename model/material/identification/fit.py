@@ -16,7 +16,8 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from coilset.model.base.errors import InputError
-from coilset.model.material.identification.experiments import COMPONENTS, Test
+from coilset.model.material.identification.elastic_part import check_elastic
+from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, moved_by
 from coilset.model.material.identification.hardening import (
     NO_BACK_STRESS,
@@ -28,9 +29,7 @@ from coilset.model.material.identification.hardening import (
 from coilset.model.material.identification.result import Fit, Minimum, result
 
 STEP = 1e-4  # of the logarithms of the variables, for derivatives
-LOADED = 0.1  # of the maximum stress: readings below it may be of a machine that settles
 BENDS = 4  # starts with different transition points that are followed to their minima: those that fit best
-SOFTEST = 0.03  # of the elastic modulus, at the first reading above that; strain in per cent gives 0.01
 
 
 def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = None, temperature: float = 293.15) -> Fit:
@@ -47,12 +46,13 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
         A `Fit`.
 
     Raises:
-        InputError: if a kind of test is missing, or strain is not a number, or stress not in N/mm².
+        InputError: if a kind of test is missing, or strain is not a number, or stress not in N/mm², or a
+            test's elastic part not that of G and nu.
         SolveError: if the constants cannot be determined from these tests.
     """
     tests = tuple(tests)
     for test in tests:
-        check_units(test, float(G), float(nu))
+        check_elastic(test, float(G), float(nu))
     kinds = {kind: [test for test in tests if test.kind == kind] for kind in ("tension", "torsion", "combined")}
     isotropic = bool(tests) and len(kinds["tension"]) == len(tests)
     saturates = not isotropic if saturates is None else saturates
@@ -74,19 +74,6 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
     starts = _closest(model, bend_starts(model, values, proportional, reach), tests, BENDS)
     minima = _minima(model, starts, model.names, tests)
     return result(model, minima, tests, float(temperature))
-
-
-def check_units(test: Test, G: float, nu: float) -> None:
-    """Refuse a test whose first loaded reading is far softer than the elastic constants allow, G in N/mm²."""
-    moduli = 2.0 * G * (1.0 + nu), G
-    for component in COMPONENTS[test.kind]:
-        strain, stress = np.abs(test.strain[:, component]), np.abs(test.stress[:, component])
-        first = int(np.argmax(stress >= LOADED * stress.max()))
-        if stress[first] < SOFTEST * moduli[component] * strain[first]:
-            raise test.error(
-                f"at a stress of {stress[first]:.4g} its strain is {strain[first]:.4g}, far more than the elastic "
-                f"{stress[first] / moduli[component]:.2g}; give strain as a number, 0.02 for 2 %, and stress in N/mm²"
-            )
 
 
 def _adjust(model: FittedLaw, values: dict[str, float], names: Sequence[str], tests: Sequence[Test]) -> Minimum:

@@ -9,6 +9,7 @@ from scipy.optimize import OptimizeResult
 from scipy.stats import norm
 
 from coilset.model.base.errors import SolveError
+from coilset.model.material.identification.elastic_part import TESTER
 from coilset.model.material.identification.experiments import COMPONENTS, Test
 from coilset.model.material.identification.fitted_law import LARGE, FittedLaw, Variables, moved_by
 from coilset.model.material.law import functions as fn
@@ -61,6 +62,15 @@ class Fit:
             if scatter > POOR * stress
         )
 
+    @property
+    def tester(self) -> tuple[str, ...]:
+        """What of the tester was taken off each test's strain, in a sentence each."""
+        given = {
+            test.name: ", ".join(f"{name} {value:.3g} {TESTER[name]}".strip() for name, value in test.tester.items())
+            for test in self.tests
+        }
+        return tuple(f"{name}: {properties} taken off the strain." for name, properties in given.items() if properties)
+
     def material(self, name: str) -> dict[str, Any]:
         """Content of a material file."""
         c = self.constants
@@ -85,7 +95,7 @@ class Fit:
             "description": "Constants identified from tests",
             "source": "coilset material fit: " + ", ".join(test.name for test in self.tests),
             "units": "N, mm, K",
-            "validity": {"plastic_work": float(f"{self.work:.3g}"), "remark": remark},
+            "validity": {"plastic_work": float(f"{self.work:.3g}"), "remark": " ".join([remark, *self.tester])},
             "temperatures": [at],
         }
 

@@ -58,7 +58,7 @@ def fit_springs(
     file, picture = files_to_write(out, name, force, f"{name}.yaml", "fit.png")
     pressings = _read(data)
     console = Console()
-    found = fit(pressings, law, _known(known), tester, Errors(force_error, travel_error))
+    found = fit(pressings, law, known_values(known), tester, Errors(force_error, travel_error))
     units = found.model.form.units | TESTER
     table = Table("constant", "value", "from", "to", "unit", "", box=None, padding=(0, 2))
     for one in found.intervals.values():
@@ -80,7 +80,12 @@ def fit_springs(
     write_picture(figure(found), picture, console)
 
 
-def _known(texts: list[str]) -> dict[str, float]:
+def known_values(texts: list[str]) -> dict[str, float]:
+    """Numbers of `--known NAME=VALUE`.
+
+    Raises:
+        InputError: one that is not of this form.
+    """
     from coilset.model.base.columns import number
 
     found = {}
