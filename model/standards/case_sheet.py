@@ -13,7 +13,7 @@ from coilset.model.standards.from_results import Found
 from coilset.model.standards.rate import OnPoint, tails_compliance
 from coilset.model.standards.sheet import Sheet, pulled_lengths, pulls, rotations, working_lengths
 from coilset.model.standards.wires import wire
-from coilset.model.standards.wires.law import case_elastic, case_law
+from coilset.model.standards.wires.law import case_elastic, case_law, warm_elastic
 
 
 def case_sheet(
@@ -42,7 +42,7 @@ def case_sheet(
     law, cylinder = case_law(case, spring), Cylinder.of(spring)
     named = wire_name or getattr(case.material, "wire", None)
     known = wire(named) if named else None
-    elastic = known.elastic(cylinder.d) if known else case_elastic(case, law)
+    elastic = warm_elastic(known, cylinder.d, case.temperature) if known else case_elastic(case, law)
     for length in lengths:
         if not cylinder.solid < length < cylinder.length:
             raise InputError(

@@ -31,7 +31,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         *_renamed(case),
         *_accuracy(case),
         *_estimated(case),
-        *_warm(case, law),
+        *warm_warnings(case, law, None if isinstance(case.material, str) else case.material.wire),
         *_supports(case, spring),
         *_warping(case, spring, law),
         *own,
@@ -60,16 +60,22 @@ def _estimated(case: Case) -> Iterator[Warning]:
             f"the hardening of {name} is an estimate from its minimum tensile "
             "strength; a test of the wire gives its own (coilset material fit)",
         )
-        if case.temperature not in (None, ROOM_TEMPERATURE):
-            yield Warning(
-                "temperature",
-                "temperature",
-                f"at {case.temperature:g} K G and E of {name} follow the standard's slope of G, but the strength is "
-                "that of 20 °C: how it decreases is unknown, so that a warm spring sets more than computed",
-            )
 
 
-def _warm(case: Case, law: Law) -> Iterator[Warning]:
+def warm_warnings(case: Case, law: Law, wire_name: str | None) -> Iterator[Warning]:
+    """Warnings of a spring whose moduli are those of its temperature, but whose strength is not.
+
+    Args:
+        case, law: the law is the case's.
+        wire_name: standard wire whose numbers are used; None if there is none.
+    """
+    if wire_name and case.temperature not in (None, ROOM_TEMPERATURE):
+        yield Warning(
+            "temperature",
+            "temperature",
+            f"at {case.temperature:g} K G and E of {wire_name} follow the standard's slope of G, but the strength "
+            "is that of 20 °C: how it decreases is unknown, so that a warm spring sets more than computed",
+        )
     tested = law.data.validity.temperature
     reached = [case.temperature, *(phase.temperature for phase in case.loading if isinstance(phase, TimePhase))]
     other = [one for one in reached if one is not None and one != tested]

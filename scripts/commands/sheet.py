@@ -19,12 +19,13 @@ from coilset.model.report.document.words import Language, Words
 from coilset.model.results.files.folder import make, refuse_to_replace
 from coilset.model.standards import from_results, goodman
 from coilset.model.standards.case_sheet import case_sheet
-from coilset.model.standards.case_warnings import sheet_warnings
+from coilset.model.standards.case_warnings import sheet_warnings, warm_warnings
 from coilset.model.standards.en15800 import GRADES
 from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.spring_warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
+from coilset.model.standards.wires.law import case_law
 from coilset.model.standards.wires.library import files, own_folder
 from coilset.model.standards.wires.wire_file import Surface
 from coilset.model.standards.wires.words import WIRE_COLUMNS, described, table_row
@@ -117,7 +118,7 @@ def _print(console: Console, case: Case, spring: Spring, made: Sheet, results: s
             console.print(line, soft_wrap=True)
     if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
-    warnings = [warning.message for warning in _warnings(spring, made)]
+    warnings = [warning.message for warning in _warnings(case, spring, made)]
     for message in warnings:
         console.warn(message)
     return [*before, *warnings]
@@ -203,9 +204,10 @@ def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
     return f"{known.name}, {made.spring.d:g} mm", endured, cycle
 
 
-def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
+def _warnings(case: Case, spring: Spring, made: Sheet) -> list[Warning]:
     cylinder = made.spring
-    warnings = [*spring_warnings(spring, made.elastic), *sheet_warnings(made, [cylinder.solid])]
+    warm = warm_warnings(case, case_law(case, spring), made.wire.name if made.wire else None)
+    warnings = [*warm, *spring_warnings(spring, made.elastic), *sheet_warnings(made, [cylinder.solid])]
     set_mm = made.at_run("set_mm")
     if set_mm and made.was_at_block and not (made.pulled or made.turns_to):  # any other run is no presetting
         warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])

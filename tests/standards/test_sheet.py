@@ -320,6 +320,33 @@ def test_a_warm_spring_has_the_moduli_and_the_yield_stress_of_its_temperature(ex
 
 
 @pytest.mark.parametrize(
+    ("name", "temperature", "G", "loss"),
+    [
+        ("EN 10270-2 VDSiCr", 293.15, 79500, 0.0),
+        ("EN 10270-2 VDSiCr", 423.15, 79500, 0.25e-3 * 130),
+        ("EN 10270-3 1.4310", 473.15, 70000, 0.40e-3 * 180),
+        ("EN 10270-1 SH", 233.15, 81500, -0.25e-3 * 60),
+    ],
+)
+def test_a_warm_wire_has_the_moduli_of_its_temperature(example, name, temperature, G, loss, capsys, tmp_path):
+    """By hand, G of 20 °C and the slope of the standard; the sheet had those of 20 °C at any temperature.
+
+    Of the case's wire, and of one given by --wire; with the warning of a run that the strength is that of 20 °C.
+    """
+    rate = G * (1.0 - loss) * 5.0**4 / (8 * 40.0**3 * 2.5)
+    settings = [f"material={{wire: {name}}}", f"temperature={temperature}"]
+    made = case_sheet(read_case(example, settings), SPRING, None)
+    assert made.rate == pytest.approx(rate)
+    assert made.elastic.young_modulus == pytest.approx(wire(name).elastic(5.0).young_modulus * (1.0 - loss))
+    other = ["material={wire: EN 10270-1 DH}", f"temperature={temperature}"]
+    assert case_sheet(read_case(example, other), SPRING, None, name).rate == pytest.approx(rate)
+    sheet(example, Options(settings=settings, out=[tmp_path], pictures=False))
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"{rate:.5g} N/mm" in said
+    assert ("the strength is that of 20 °C" in said) == (loss != 0.0)
+
+
+@pytest.mark.parametrize(
     ("settings", "held"),
     [
         ([], True),

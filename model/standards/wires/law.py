@@ -45,8 +45,7 @@ def wire_law(name: str, diameter: float, spin: bool = False, temperature: float 
         name: name of a wire, as in `coilset.model.standards.wires.names()`.
         diameter: of the wire, mm.
         spin: see `Law`.
-        temperature: K; default is 20 °C. G decreases by the slope of the standard, E by the same part (an estimate);
-            the strength stays that of 20 °C.
+        temperature: K; default is 20 °C. The moduli are those of `warm_elastic`; the strength stays that of 20 °C.
 
     Returns:
         Law at this temperature, valid up to the plastic work at uniform strain.
@@ -55,10 +54,9 @@ def wire_law(name: str, diameter: float, spin: bool = False, temperature: float 
         InputError: an unknown wire, a diameter without a known strength, or a temperature beyond that of its slope.
     """
     known = wire(name)
-    elastic, found = known.elastic(diameter), hardening_curve(known, diameter)
+    elastic, found = warm_elastic(known, diameter, temperature), hardening_curve(known, diameter)
     strength = known.strength(diameter)
-    softer = 1.0 if temperature is None else _softened(known, temperature)
-    data = saturating(found, softer * elastic.shear_modulus, poisson_ratio(elastic))
+    data = saturating(found, elastic.shear_modulus, poisson_ratio(elastic))
     data["temperatures"][0]["temperature"] = ROOM_TEMPERATURE if temperature is None else temperature
     data["validity"]["remark"] = ASSUMPTIONS.format(
         elastic=known.entry.elastic_limit.at(diameter) * strength,
@@ -72,6 +70,19 @@ def wire_law(name: str, diameter: float, spin: bool = False, temperature: float 
         "source": "strength " + known.citation(known.entry.strength),
     }
     return Law(MaterialFile.model_validate(data), spin)
+
+
+def warm_elastic(wire: Wire, diameter: float, temperature: float | None) -> Elastic:
+    """Moduli and density of a wire at a diameter, mm, and a temperature, K; None: 20 °C.
+
+    G decreases by the slope of the standard, E by the same part (an estimate).
+
+    Raises:
+        InputError: if the wire has no slope, or the temperature lies outside of where it is used.
+    """
+    cold = wire.elastic(diameter)
+    part = 1.0 if temperature is None else _softened(wire, temperature)
+    return Elastic(part * cold.shear_modulus, part * cold.young_modulus, cold.density)
 
 
 def _softened(wire: Wire, temperature: float) -> float:
