@@ -21,6 +21,7 @@ class LineMesh:
         node: station number of each local node, ghosts included, shape (local nodes,).
         element: element number (from station i to i + 1) of each local cell, ghosts included.
         owned_cells: number of cells that this rank owns; they come first.
+        comm: MPI communicator, of which the mesh has a duplicate of its own.
     """
 
     mesh: dmesh.Mesh
@@ -28,6 +29,7 @@ class LineMesh:
     node: np.ndarray
     element: np.ndarray
     owned_cells: int
+    comm: MPI.Comm
 
     def in_order(self, values: np.ndarray) -> np.ndarray:
         """A copy of the owned cells' values in the order of the elements on rank 0, empty elsewhere; collective.
@@ -35,7 +37,7 @@ class LineMesh:
         Args:
             values: shape (owned cells, ...).
         """
-        comm, element = self.mesh.comm, self.element[: self.owned_cells]
+        comm, element = self.comm, self.element[: self.owned_cells]
         if comm.size == 1:
             ordered = np.empty_like(values)
             ordered[element] = values
@@ -82,4 +84,4 @@ def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
     )
     node = np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)
     elements = node[geometry_dofs(mesh)].min(axis=1)
-    return LineMesh(mesh, stations, node, elements, mesh.topology.index_map(1).size_local)
+    return LineMesh(mesh, stations, node, elements, mesh.topology.index_map(1).size_local, comm)

@@ -32,4 +32,4 @@ def frame_mesh(nodes: np.ndarray, pairs: np.ndarray, comm: MPI.Comm) -> LineMesh
     mesh = dmesh.create_mesh(comm, pairs, x=nodes, e=domain)  # by name: 0.10 changed the order of the arguments
     node = np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)
     element = np.asarray(mesh.topology.original_cell_index, dtype=np.int64)
-    return LineMesh(mesh, nodes, node, element, len(pairs))
+    return LineMesh(mesh, nodes, node, element, len(pairs), comm)

@@ -67,7 +67,7 @@ def give_past(rod: Rod, spring: object) -> float | None:
         _through(rod.sections, rod.rule, state, past, tight)
     except SolveError as error:
         problem = str(error)
-    problem = next((one for one in rod.mesh.comm.allgather(problem) if one), None)
+    problem = next((one for one in rod.comm.allgather(problem) if one), None)
     if problem:
         if past.tension and not past.coiled:
             raise InputError(f"the wire does not take this tension: {problem}", "spring.initial_tension")
@@ -77,7 +77,7 @@ def give_past(rod: Rod, spring: object) -> float | None:
         raise InputError(f"{wanted}: {problem}", "spring.made_by")
     rod.state.restore()
     rod.rest()
-    ordered = rod.mesh.comm.bcast(rod.line.in_order(np.moveaxis(tight, 0, -1)))
+    ordered = rod.comm.bcast(rod.line.in_order(np.moveaxis(tight, 0, -1)))
     curvature, torsion = ordered[len(ordered) // 2, 0]
     return float(2.0 * curvature / (curvature**2 + torsion**2)) if past.coiled else None
 
@@ -133,7 +133,7 @@ def _layer(rod: Rod, peening: Peening) -> Layer:
     Raises:
         InputError: if it is thicker than the wire's radius.
     """
-    radius = float(rod.mesh.comm.allreduce(rod.radius.min(initial=np.inf), op=MPI.MIN))
+    radius = float(rod.comm.allreduce(rod.radius.min(initial=np.inf), op=MPI.MIN))
     if peening.depth[-1] > radius:
         raise InputError(
             f"goes down to {peening.depth[-1]:g} mm, below the wire's axis at {radius:g} mm", "spring.peening.depth"

@@ -104,7 +104,7 @@ class WireHeat:
         totals = self._totals.equilibrium
         totals += generated, given_off
         self._nodes.equilibrium[:] = equation.temperature.x.array[equation.dofs]
-        hottest = max_of_ranks(rod.mesh.comm, self._nodes.equilibrium.max(initial=0.0))
+        hottest = max_of_ranks(rod.comm, self._nodes.equilibrium.max(initial=0.0))
         self._clock.equilibrium[:2] = self._clock.equilibrium[0] + seconds / 3600.0, hottest
         rod.state.restore()
 

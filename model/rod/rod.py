@@ -96,7 +96,7 @@ class Rod(Body):
         self.element = element
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
-        self.comm = mesh.comm
+        self.comm = line.comm
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         self.temperature = law.reference_temperature if temperature is None else temperature
         order = line.element[:n]

@@ -2,6 +2,7 @@
 
 import logging
 import math
+import weakref
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
@@ -115,7 +116,8 @@ class LoadHistory:
         self.control = build_control(case, spring, self.system, wire.turns)
         self.stability = Stability(self.newton.iteration)
         self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
-        self.continuation.refusal, self.continuation.cause = self._passed, self._gives_way
+        me = weakref.proxy(self)  # that the end of an analysis frees it at once
+        self.continuation.refusal, self.continuation.cause = lambda: me._passed(), lambda: me._gives_way()
         self.continuation.steps = steps(self.continuation.control)
         self.program = LoadProgram(self.control, self.continuation)
         self.setup = build_setup(case, spring, wire, kinds, coiling_diameter)

@@ -1,6 +1,5 @@
 """One case of a sweep, from raw data to its record."""
 
-import gc
 import math
 import sys
 import time
@@ -77,9 +76,6 @@ def evaluate(
         record["steps"] = {
             column.name: [plain(getattr(step, column.name)) for step in result.steps] for column in fields(Step)
         }
-    if analysis is not None:
-        del analysis, result
-        gc.collect()  # solver and system refer to each other
     return {**record, "seconds": time.perf_counter() - began}
 
 
@@ -92,15 +88,9 @@ def estimated(case: Case, keys: Keys) -> dict[str, Any]:
 
 
 def evaluate_in_worker(tasks: list[Task], comm: MPI.Comm) -> list[Record]:
-    """`evaluate` each task of a message in a process that does nothing else, the faster the more it has run.
-
-    What is left after a message stays until the end: libraries, compiled functions. Later searches for garbage, which
-    would take 12 ms longer each, skip it.
-    """
+    """`evaluate` each task of a message in a process that does nothing else."""
     keys = Keys()
-    records = [evaluate(comm=comm, keys=keys, **task) for task in tasks]
-    gc.freeze()
-    return records
+    return [evaluate(comm=comm, keys=keys, **task) for task in tasks]
 
 
 def plain(value: Any) -> Any:

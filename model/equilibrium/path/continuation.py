@@ -59,7 +59,7 @@ class Continuation:
         step_error: StepError | None = None,
     ) -> None:
         self.newton, self.system, self.control = newton, newton.system, control or StepControl()
-        self.penetration_limit, self.starts = penetration_limit, starts or self.from_last_step
+        self.penetration_limit, self.starts = penetration_limit, starts
         self.stability, self.negative_pivots, self.step_error = stability, 0, step_error
         self.refusal: Callable[[], str | None] = lambda: None
         self.cause: Callable[[], str] = lambda: ""
@@ -310,7 +310,7 @@ class Continuation:
             load, length = path.load(begun.done + size), path.step_length(begun.done, size)
             if path.moment is not None:
                 self.system.pass_time(path.moment(begun.done + 0.5 * size), path.moment(begun.done + size))
-            outcome = self._attempt(load, self.starts(load, length), length, path.automatic)
+            outcome = self._attempt(load, (self.starts or self.from_last_step)(load, length), length, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 unstable_at = size
             if path.gives_way and not (outcome.converged or outcome.refused):

@@ -11,6 +11,8 @@ the solution of M ẋ = −K x does, where a real eigenvalue of K passes zero; t
 """
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,8 +61,8 @@ class Stability:
             return 0
         if not self.system.is_symmetric:
             return self.weakest(load).negative
-        factors = self._factors(load)
-        return 0 if factors is None else _negative(factors)
+        with self._factorised(load) as found:
+            return 0 if found is None else _negative(found[1])
 
     def weakest(self, load: Load) -> Weakest:
         """The weakest mode at the last evaluation; collective.
@@ -72,61 +74,77 @@ class Stability:
         Where the law has found no stress, or the factors end at a pivot of zero, nothing is found: no negative one, and
         neither value nor mode is a number.
         """
-        factors = self._factors(load)
-        if factors is None:
-            nothing = self.layout.vector()
-            nothing.set(math.nan)
-            return Weakest(0, math.nan, nothing)
-        matrix, scale = self._matrix, self.layout.vector(self.weights(load))
-        values, block = self._nearest(factors, scale)
-        found = int(np.count_nonzero(values < 0.0))
-        negative = _negative(factors) if self.system.is_symmetric else found
-        if negative > found:
-            shift = float(np.abs(values).max())
-            while _negative(factors) and np.isfinite(shift):
-                shift *= FURTHER
-                shifted = matrix.copy()
-                shifted.setDiagonal(shift * scale, addv=PETSc.InsertMode.ADD_VALUES)
-                factors.setOperators(shifted)
-                factors.setUp()
-            values, block = self._nearest(factors, scale)
+        with self._factorised(load) as factorised:
+            if factorised is None:
+                nothing = self.layout.vector()
+                nothing.set(math.nan)
+                return Weakest(0, math.nan, nothing)
+            matrix, factors = factorised
+            scale = self.layout.vector(self.weights(load))
+            values, block = self._nearest(matrix, factors, scale)
+            found = int(np.count_nonzero(values < 0.0))
+            negative = _negative(factors) if self.system.is_symmetric else found
+            if negative > found:
+                self._shift(matrix, factors, scale, float(np.abs(values).max()))
+                values, block = self._nearest(matrix, factors, scale)
         mode = block[int(values.argmin())]
         mode.scale(1.0 / self.greatest_displacement(mode))
         return Weakest(negative, float(values.min()), mode)
 
-    def _nearest(self, factors: PETSc.PC, scale: PETSc.Vec) -> tuple[np.ndarray, list[PETSc.Vec]]:
+    def _nearest(self, matrix: PETSc.Mat, factors: PETSc.PC, scale: PETSc.Vec) -> tuple[np.ndarray, list[PETSc.Vec]]:
         """Eigenvalues of the tangent that are nearest to zero, or to the shift of the factors, and their modes."""
-        block = self._start_block()
+        block, right = self._start_block(), scale.duplicate()
         values = np.zeros(len(block))
         for _iteration in range(ITERATIONS):
             for vector in block:
-                right = vector.duplicate()
                 right.pointwiseMult(scale, vector)
                 factors.apply(right, vector)
-            values, block = _rayleigh_ritz(self._matrix, scale, block, self.system.is_symmetric)
+            before = block
+            values, block = _rayleigh_ritz(matrix, scale, before, self.system.is_symmetric)
+            _destroy(*before)
+        _destroy(right)
         return values, block
 
     # ---- matrix ----------------------------------------------------------------------------------------------------
 
-    def _factors(self, load: Load) -> PETSc.PC | None:
-        """Factors of the tangent at the last evaluation, without friction those of its symmetric part; None without."""
+    @contextmanager
+    def _factorised(self, load: Load) -> Iterator[tuple[PETSc.Mat, PETSc.PC] | None]:
+        """The tangent at the last evaluation, without friction its symmetric part, and its factors; collective.
+
+        None where there are no factors. Both are as large as the solver's own, and are freed at the end.
+        """
         if not self.system.last.has_stress:
-            return None
+            yield None
+            return
         tangent, symmetric = self.iteration.matrix, self.system.is_symmetric
         with self.system.body.judged():
             self.system.last_tangent(load, tangent, at_step_start=True)
-        self._matrix = matrix = tangent.mat.copy()
+        matrix = tangent.mat.copy()
         if symmetric:
             transposed = tangent.mat.copy()
             transposed.transpose()
             matrix.axpy(1.0, transposed)
             matrix.scale(0.5)
+            _destroy(transposed)
         rows = (load.held + self.layout.start).astype(PETSc.IntType)
         matrix.zeroRowsColumns(rows, diag=self.system.body.constraint_weight)
         matrix.setOption(PETSc.Mat.Option.SYMMETRIC, symmetric)
         factors = lu(matrix, tangent.ordering)
         factors.setUp()
-        return None if factors.getFailedReason() else factors
+        try:
+            yield None if factors.getFailedReason() else (matrix, factors)
+        finally:
+            _destroy(factors, matrix)
+
+    def _shift(self, matrix: PETSc.Mat, factors: PETSc.PC, scale: PETSc.Vec, shift: float) -> None:
+        """Shift the matrix of the factors until all of its eigenvalues are positive."""
+        while _negative(factors) and np.isfinite(shift):
+            shift *= FURTHER
+            shifted, diagonal = matrix.copy(), shift * scale
+            shifted.setDiagonal(diagonal, addv=PETSc.InsertMode.ADD_VALUES)
+            factors.setOperators(shifted)
+            factors.setUp()
+            _destroy(shifted, diagonal)  # the factors keep a reference of their own
 
     def weights(self, load: Load) -> np.ndarray:
         """Of this rank's free unknowns in a mode's norm, see Layout; 0 of the others."""
@@ -175,17 +193,25 @@ def _negative(factors: PETSc.PC) -> int:
     return number
 
 
+def _destroy(*objects: PETSc.Object) -> None:
+    """Free PETSc's objects now: on several ranks it keeps those that Python drops; collective."""
+    for each in objects:
+        each.destroy()
+
+
 def _rayleigh_ritz(
     matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec], symmetric: bool
 ) -> tuple[np.ndarray, list[PETSc.Vec]]:
     """Eigenvalues of K v = λ M v in the span of a block, and its vectors, M = diag(scale); infinite, complex ones."""
     size = len(block)
     K, M = np.empty((size, size)), np.empty((size, size))
+    image, weighted = scale.duplicate(), scale.duplicate()
     for j, right in enumerate(block):
-        image, weighted = matrix * right, right.duplicate()
+        matrix.mult(right, image)
         weighted.pointwiseMult(scale, right)
         for i, left in enumerate(block):
             K[i, j], M[i, j] = left.dot(image), left.dot(weighted)
+    _destroy(image, weighted)
     lengths = np.sqrt(np.diag(M))
     K, M = K / np.outer(lengths, lengths), M / np.outer(lengths, lengths)
     roots, axes = np.linalg.eigh(0.5 * (M + M.T))

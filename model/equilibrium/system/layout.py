@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from dolfinx import fem
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.model.body.state import Field, Where
@@ -22,6 +23,12 @@ class Layout:
 
     The body's unknowns keep DOLFINx's numbering, so that DOLFINx can assemble into the enlarged vectors directly.
 
+    Args:
+        space: the body's function space.
+        extra: number of further unknowns.
+        comm: of PETSc's objects; None: that of the space's mesh. On several ranks PETSc keeps what Python drops by
+            communicator until it is told to free it: one that outlives the body lets the next one free all of this.
+
     Attributes:
         owned: number of the body's unknowns on this rank; they come first.
         size_local, size: of a vector, on this rank and in all.
@@ -29,9 +36,9 @@ class Layout:
         has_extra: whether this rank owns the extra unknowns.
     """
 
-    def __init__(self, space: fem.FunctionSpace, extra: int = 0) -> None:
+    def __init__(self, space: fem.FunctionSpace, extra: int = 0, comm: MPI.Comm | None = None) -> None:
         dofmap = space.dofmap
-        self.comm, self.block_size = space.mesh.comm, dofmap.index_map_bs
+        self.comm, self.block_size = comm or space.mesh.comm, dofmap.index_map_bs
         self.index_map = dofmap.index_map
         self.owned = dofmap.index_map.size_local * self.block_size
         self.body_size = dofmap.index_map.size_global * self.block_size
@@ -90,7 +97,7 @@ class LineLayout(Layout):
     """
 
     def __init__(self, rod: "Rod") -> None:
-        super().__init__(rod.V, SEATS)
+        super().__init__(rod.V, SEATS, rod.comm)
         self.rod = rod
         comm, line, index_map = self.comm, rod.line, self.index_map
         self.line = line

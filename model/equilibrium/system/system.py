@@ -229,12 +229,13 @@ class System:
     # ---- transactions ----------------------------------------------------------------------------------------------
 
     def commit(self) -> None:
-        """Make the trial state the equilibrium."""
+        """Make the trial state the equilibrium; collective."""
         self.body.advance()
         if self.contacts:
             self.touching.share_memories()
         self.state.commit()
         self.expire_at_equilibrium()
+        self._free_dropped()
 
     def restore(self) -> None:
         """Go back to the last equilibrium; collective."""
@@ -242,6 +243,12 @@ class System:
         self._body_increments[:] = 0.0
         self._evaluate_trial(np.zeros(self.layout.size_local))
         self.expire()
+        self._free_dropped()
+
+    def _free_dropped(self) -> None:
+        """Free the PETSc objects that Python has dropped, which PETSc keeps on several ranks; collective."""
+        if self.comm.size > 1:
+            PETSc.garbage_cleanup(self.comm)
 
     def reset_contacts(self) -> None:
         """Restore the contacts' memories to the last equilibrium."""
