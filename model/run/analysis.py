@@ -8,7 +8,7 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.path.step_sizes import StepSizes
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.record import Result, Step
-from coilset.model.run.error_estimates import estimated, without_errors
+from coilset.model.run.error_estimates import estimated
 from coilset.model.run.load_history import FurtherContacts, LoadHistory, Save
 from coilset.model.run.working import working_states
 
@@ -45,5 +45,5 @@ class Analysis(LoadHistory):
         """The load program, as `LoadHistory.run`, then the working states and the errors; collective."""
         super().run(report, save, touched)
         self.recorder.add_working(working_states(self))
-        self.recorder.end(estimated(self) if self._estimates and self.result.steps else without_errors(self.result))
+        self.recorder.end(estimated(self) if self._estimates and self.result.steps else self.result)
         return self.result

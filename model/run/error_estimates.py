@@ -17,9 +17,10 @@ elements, evenly spread, are followed in the same way as ones that warp freely.
 
 **Contact**: bodies that lie in each other by p under pressures q hold the energy U = ½ Σ q p. Rigid ones hold none, and
 by the principle of minimum potential energy their spring's is greater by U to first order: its force is greater by
-dU/ds at the same travel, of which RIGID times as much is stated. The wire is compressed by p = 2U/F less than the
-travel says, which bounds the error of the set. Where coils stand on each other, the bedding takes a part ρ = dp/ds of
-all further travel; the stiffness of rigid ones is greater by 1/(1 − ρ) there, and with it the error of the force.
+dU/ds at the same travel, of which RIGID times as much is stated: U is taken again at a small further travel, so that it
+does not depend on how long steps are. The wire is compressed by p = 2U/F less than the travel says, which bounds the
+error of the set. Where coils stand on each other, the bedding takes a part ρ of all further travel, F ρ = dU/ds; the
+stiffness of rigid ones is greater by 1/(1 − ρ) there, and with it the error of the force.
 """
 
 import itertools
@@ -39,7 +40,7 @@ from coilset.model.base.errors import CoilsetError
 from coilset.model.case import Case
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.manufacture.initial_state import give_sections_past
-from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step
+from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step, Working
 from coilset.model.results.records.releases import FREE, Release, is_turned, last_release
 from coilset.model.results.stresses import change_of_sign, shear_inside, to_the_end
 from coilset.model.run.load_history import LoadHistory
@@ -66,6 +67,7 @@ RATE = 1.0
 SECTION = 1.25  # of the difference to the finer rule, which has an error of its own
 RIGID = 1.5  # of dU/ds: with forty times the bedding, forces of seven springs rose by 0.9 to 1.5 times as much
 TAKEN = 0.9  # part of the travel that the bedding takes at most: beyond, the force has no limit with rigid contacts
+FURTHER = 1e-5  # of the free length: a travel over which the contacts' energy changes in proportion
 BALANCE = FREE  # of the companion: with less of it, its released spring might not count as free of load
 NOT_KNOWN = Errors(None, None, None)
 
@@ -78,28 +80,23 @@ def estimated(analysis: LoadHistory) -> Result:
     """
     result, comm = analysis.result, analysis.comm
     if is_turned(analysis.setup, result.steps):
-        return without_errors(result)
+        return result
     try:
         companion = LoadHistory(coarse_case(analysis.case, result.steps), comm, False)
         watch = _Watch(companion)
         companion.run(watch)
-        others = working_states(companion)
         surfaces = watch.surface_errors()
+        twins = working_states(companion, watch)
     except CoilsetError as error:
         log.info("mesh, section and contact: errors not estimated, the companion on half of the elements: %s", error)
         errors = RunErrors(_of_steps(analysis.setup, result), *[NOT_KNOWN] * 4)
-        return replace(without_errors(result), errors=errors)
+        return replace(result, errors=errors)
     judged = _judged(analysis, companion, watch, surfaces) if comm.rank == 0 else None
     steps, errors = comm.bcast(judged)
-    working = result.working and result.working.with_errors(others)
+    working = result.working and twins and _working(result.working, twins, watch)
     of_rate = RATE * abs(result.rate - companion.result.rate)
     rate_error = of_rate if math.isfinite(of_rate) else None
     return replace(result, steps=steps, errors=errors, working=working, rate_error=rate_error)
-
-
-def without_errors(result: Result) -> Result:
-    """The result of a run without a companion: only the errors by its steps are known, of working states none."""
-    return replace(result, working=result.working and result.working.with_errors(None))
 
 
 def _together(comm: MPI.Comm, action: Callable[[], object]) -> None:
@@ -145,15 +142,14 @@ class _Seen:
 
     Attributes:
         step: Step.
-        section, warping: error of the force by the section rule and by elastic warping, N.
-        energy: of the contacts' bedding, N mm.
+        section, warping, contact: error of the force by the section rule, by elastic warping and by contact, N.
         taken: travel that the bedding has taken, mm; 0 without a force.
     """
 
     step: Step
     section: float
     warping: float
-    energy: float
+    contact: float
     taken: float
 
 
@@ -249,24 +245,40 @@ class _Watch:
             finer = outline.rule(max(WARPING_POINTS, len(rule)))
             self.warping = _Followed(companion, WARPING, "warping", finer, WARPING_DEGREE)
         self.travel, self.greatest, self.torque = 0.0, 0.0, 0.0
-        self.seen, self.at = list[_Seen](), dict[tuple[int, float], int]()
+        self.seen, self.at = list[_Seen](), dict[int, int]()  # and which of them is that of a step, by its number
 
     def __call__(self, step: Step) -> None:
         travel, self.travel = step.travel_mm - self.travel, step.travel_mm
         still = abs(travel) < STILL * self.companion.spring.free_length
         section = self.finer.follow(travel, still)
         warping = self.warping.follow(travel, still) if self.warping else 0.0
+        energy, force = self._energy(), abs(step.force_N)
+        self.greatest, self.torque = max(self.greatest, force), max(self.torque, abs(step.torque_Nmm))
+        loaded = force > FREE * self.greatest
+        if not (self.seen and step.rests(self.seen[-1].step, self.greatest, self.torque)):
+            contact = _with_rigid_contacts(self._slope(step, energy), force if loaded else math.inf)
+            self.seen.append(_Seen(step, section, warping, contact, 2.0 * energy / force if loaded else 0.0))
+        self.at[step.number] = len(self.seen) - 1
+
+    def _energy(self) -> float:
+        """Energy of the contacts' bedding at the last evaluation, N mm; collective."""
         layout, energy = self.companion.system.layout, 0.0
         assert isinstance(layout, LineLayout)
         for part in self.companion.system.last.contributions:
             counted = part.bears & layout.begins_here(part.dofs)  # contacts that join two ranks' parts are on both
             energy += 0.5 * float(part.pressure[counted] @ part.penetration[counted])
-        energy, force = sum_of_ranks(self.comm, energy), abs(step.force_N)
-        self.greatest, self.torque = max(self.greatest, force), max(self.torque, abs(step.torque_Nmm))
-        taken = 2.0 * energy / force if force > FREE * self.greatest else 0.0
-        if not (self.seen and step.rests(self.seen[-1].step, self.greatest, self.torque)):
-            self.seen.append(_Seen(step, section, warping, energy, taken))
-        self.at[_place(step)] = len(self.seen) - 1
+        return sum_of_ranks(self.comm, energy)
+
+    def _slope(self, step: Step, energy: float) -> float:
+        """Change of the energy over a travel that makes the force greater, N; not a number if none is found;
+        collective."""
+        control, continuation = self.companion.control, self.companion.continuation
+        further = math.copysign(FURTHER * control.free_length, step.force_N)
+        for travel in (further, -further):
+            outcome, after = continuation.probe(control.to_travel(travel), self._energy)
+            if outcome.converged:
+                return math.copysign(1.0, travel * further) * (after - energy) / abs(travel)
+        return math.nan
 
     def surface_errors(self) -> tuple[float, float]:
         """Errors of the shear stress at the inside by the section rule and by elastic warping, MPa; collective."""
@@ -286,6 +298,7 @@ def _judged(
 ) -> tuple[tuple[Step, ...], RunErrors]:
     """The steps with their total errors, and the errors of the run's numbers; on rank 0."""
     setup, result, seen = analysis.setup, analysis.result, watch.seen
+    at = {_place(step): watch.at[step.number] for step in companion.result.steps}
     steps, found = list[Step](), list[_StepErrors]()
     greatest, torque = result.greatest_force, max((abs(step.torque_Nmm) for step in result.steps), default=0.0)
     force = travel = 0.0
@@ -296,11 +309,8 @@ def _judged(
         if not rests and abs(way) > STILL * analysis.spring.free_length and step.force_N != force:
             stiffness = abs((step.force_N - force) / way)
         force, travel = step.force_N, step.travel_mm
-        found.append(found[-1] if rests else _step_errors(step, seen, watch.at.get(_place(step)), stiffness))
-        one = found[-1]
-        own = step.steps_force_error_N, step.steps_height_error_mm
-        totals = [_total(mine, others) for mine, others in zip(own, (one.forces, one.heights), strict=True)]
-        steps.append(replace(step, estimated_force_error_N=totals[0], estimated_height_error_mm=totals[1]))
+        found.append(found[-1] if rests else _step_errors(step, seen, at.get(_place(step)), stiffness))
+        steps.append(_with_errors(step, found[-1]))
     top = max(range(len(steps)), key=lambda k: abs(steps[k].force_N))
     forces, release = [_known(value) for value in found[top].forces], last_release(setup, result)
     sets: list[float | None] = [None] * 4
@@ -322,6 +332,29 @@ def _judged(
     return tuple(steps), RunErrors(mine, *(Errors(*values) for values in zip(forces, sets, shears, strict=True)))
 
 
+def _working(working: Working, twins: Working, watch: _Watch) -> Working:
+    """Working states with their errors, by the companion's, its `twins`."""
+    states = []
+    for state, twin in zip(working.states, twins.states, strict=True):
+        if state.step and twin.step:
+            errors = _step_errors(state.step, watch.seen, watch.at[twin.step.number], abs(state.rate))
+            state = replace(state, step=_with_errors(state.step, errors))
+        states.append(state)
+    return replace(working, states=tuple(states))
+
+
+def _with_errors(step: Step, errors: _StepErrors) -> Step:
+    """A step with the sums of its errors."""
+    force, height = (
+        _total(own, others)
+        for own, others in (
+            (step.steps_force_error_N, errors.forces),
+            (step.steps_height_error_mm, errors.heights),
+        )
+    )
+    return replace(step, estimated_force_error_N=force, estimated_height_error_mm=height)
+
+
 def _place(step: Step) -> tuple[int, float]:
     return step.phase, round(step.progress, 9)
 
@@ -340,21 +373,13 @@ def _step_errors(step: Step, seen: Sequence[_Seen], number: int | None, stiffnes
         return _StepErrors((math.nan,) * 4, (math.nan,) * 4)
     one = seen[number]
     force = abs(one.step.force_N - step.force_N) + abs(one.step.seat_height_mm - step.seat_height_mm) * stiffness
-    forces = FORCE * force, SECTION * one.section, _contact_force(seen, number), one.warping
+    forces = FORCE * force, SECTION * one.section, one.contact, one.warping
     return _StepErrors(forces, tuple(value / stiffness if stiffness else math.nan for value in forces))
 
 
-def _contact_force(seen: Sequence[_Seen], number: int) -> float:
-    """RIGID dU/ds / (1 − ρ) over the last step with a travel, N; 0 before there is one."""
-    for k in range(number, -1, -1):
-        before = seen[k - 1] if k else None
-        way = seen[k].step.travel_mm - (before.step.travel_mm if before else 0.0)
-        if abs(way) > 0.0:
-            energy, taken = seen[k].energy, seen[k].taken
-            if before:
-                energy, taken = energy - before.energy, taken - before.taken
-            return RIGID * abs(energy / way) / (1.0 - min(max(taken / way, 0.0), TAKEN))
-    return 0.0
+def _with_rigid_contacts(slope: float, force: float) -> float:
+    """By how much the force is greater with rigid contacts: RIGID dU/ds / (1 − ρ), N."""
+    return RIGID * abs(slope) / (1.0 - min(max(slope / force, 0.0), TAKEN))
 
 
 def _by_contact(seen: Sequence[_Seen], release: Release) -> float | None:

@@ -83,7 +83,7 @@ class Recorder:
         """
         x, weakest = self.layout.gather(self.rod.x), self._weakest()
         greatest = max(self.result.greatest_force, abs(self.control.force))
-        step = self._as_wrong_as_before(self._step(phase, taken, loading, x, weakest, greatest))
+        step = self._as_wrong_as_before(self.step(phase, taken, loading, x, weakest))
         if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
             mode = BucklingMode(
                 step.travel_mm, step.force_N, weakest.value, x, self._stability.displacements(weakest.mode)
@@ -97,16 +97,23 @@ class Recorder:
             self._announce(before)
         return step
 
-    def _step(
+    def step(
         self,
         phase: int,
         taken: StepTaken,
         loading: Sequence[AnyPhase],
-        x: np.ndarray,
-        weakest: Weakest | None,
-        greatest: float,
+        x: np.ndarray | None = None,
+        weakest: Weakest | None = None,
     ) -> Step:
-        """The last equilibrium, stations at `x`, with the maximum force so far, N; collective."""
+        """The last equilibrium, which is not recorded yet; collective.
+
+        Args:
+            phase, taken, loading: as in `record`.
+            x: positions of the stations, shape (n, 3), mm; None: to be gathered.
+            weakest: of the tangent; None if it was not requested.
+        """
+        x = self.layout.gather(self.rod.x) if x is None else x
+        greatest = max(self.result.greatest_force, abs(self.control.force))
         height, force, outcome = self.control.height, self.control.force, taken.outcome
         pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
         lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0

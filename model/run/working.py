@@ -6,15 +6,15 @@ show: the plastic work at each state and the free length after them are compared
 
 import logging
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Literal
 
 from coilset.model.base.errors import SolveError
 from coilset.model.case.phases import Phase, Target
-from coilset.model.equilibrium.path.program import LoadProgram, StepTaken
-from coilset.model.results.records.record import Working, WorkingState
+from coilset.model.equilibrium.path.program import LoadProgram
+from coilset.model.results.records.record import Step, Working, WorkingState
 from coilset.model.results.records.releases import FREE
 from coilset.model.results.records.seat_reactions import faint_force
 from coilset.model.run.load_history import LoadHistory
@@ -23,34 +23,68 @@ log = logging.getLogger("coilset.steps")
 FEW = 4  # equal steps to a state, where the errors of automatic ones are not estimated
 
 
-def working_states(history: LoadHistory) -> Working | None:
-    """The finished spring at the working lengths and forces of its case; None without any; collective."""
+def working_states(history: LoadHistory, follow: Callable[[Step], object] = lambda step: None) -> Working | None:
+    """The finished spring at the working lengths and forces of its case; None without any; collective.
+
+    Args:
+        history: a complete run.
+        follow: called with each Step on the way.
+    """
     spec = history.case.working
     if spec is None:
         return None
-    with _excursion(history) as program:
+    with _excursion(history, follow) as way:
         start = history.control.height
         free = abs(history.control.force) <= FREE * history.result.greatest_force
         found: dict[str, WorkingState] = {}
         for place, target in sorted(spec.targets, key=lambda one: _distance(one[1], start)):
-            found[place] = _state(history, program, target, start if free else math.inf)
+            found[place] = _state(history, way, target, start if free else math.inf)
         more = None
         if free:
             try:
-                _go(history, program, Target(force=0.0))
+                way.go(Target(force=0.0))
                 more = start - history.control.height
             except SolveError as error:
                 log.info("the free length after the working states is unknown: %s", error)
     return Working(tuple(found[place] for place, _ in spec.targets), more)
 
 
+class _Way:
+    """A load program of its own after that of a run.
+
+    Attributes:
+        last: the last Step.
+    """
+
+    def __init__(self, history: LoadHistory, follow: Callable[[Step], object]) -> None:
+        self.history, self.follow = history, follow
+        self.program, self.last = LoadProgram(history.control, history.continuation), history.result.steps[-1]
+
+    def go(self, target: Target) -> None:
+        """Go to a target, unless the spring is there already; collective.
+
+        Raises:
+            SolveError: if there is no equilibrium.
+        """
+        history, case = self.history, self.history.case
+        steps: int | Literal["auto"] = FEW if case.steps_error is None else "auto"
+        loading = [*case.loading, Phase(to=target, steps=steps)]
+        phase = len(loading) - 1
+        self.program.begin(phase)
+        stage = history.stage(phase, loading)
+        now = history.control.height if stage.kind == "height" else history.control.force
+        for taken in self.program.run(stage) if stage.value != now else ():
+            self.last = history.recorder.step(phase, taken, loading)
+            self.follow(self.last)
+
+
 @contextmanager
-def _excursion(history: LoadHistory) -> Iterator[LoadProgram]:
-    """A load program of its own, after which everything is as before."""
+def _excursion(history: LoadHistory, follow: Callable[[Step], object]) -> Iterator[_Way]:
+    """A way after which everything is as before."""
     continuation, state = history.continuation, history.system.state
     before, number, pivots = state.copy(), continuation.number, continuation.negative_pivots
     try:
-        yield LoadProgram(history.control, continuation)
+        yield _Way(history, follow)
     finally:
         state.put_back(before)
         history.system.restore()
@@ -65,49 +99,29 @@ def _distance(target: Target, start: float) -> tuple[bool, float]:
     return True, abs(target.force or 0.0)
 
 
-def _go(history: LoadHistory, program: LoadProgram, target: Target) -> StepTaken | None:
-    """Go to a target; the last step, None if it is there already; collective."""
-    steps: int | Literal["auto"] = FEW if history.case.steps_error is None else "auto"
-    loading = [*history.case.loading, Phase(to=target, steps=steps)]
-    program.begin(len(loading) - 1)
-    stage = history.stage(len(loading) - 1, loading)
-    now = history.control.height if stage.kind == "height" else history.control.force
-    taken = list(program.run(stage)) if stage.value != now else []
-    return taken[-1] if taken else None
-
-
-def _state(history: LoadHistory, program: LoadProgram, target: Target, free_height: float) -> WorkingState:
+def _state(history: LoadHistory, way: _Way, target: Target, free_height: float) -> WorkingState:
     """The spring at a target; `free_height` is that of the released spring, infinite if it is not released."""
     kind: Literal["length", "force"] = "length" if target.height is not None else "force"
     state = WorkingState(kind, next(iter(target.axial.values())))
-    seats = history.case.ends == "seats"
-    if seats and target.height is not None and target.height > free_height:
+    on_seats = history.case.ends == "seats"
+    if on_seats and target.height is not None and target.height > free_height:
         return replace(state, reason=f"the finished spring is free there, {free_height:.5g} mm long")
     try:
-        taken = _go(history, program, target)
+        way.go(target)
     except SolveError as failure:
         return replace(state, reason=f"no equilibrium was found ({failure})")
     control, recorder = history.control, history.recorder
     force, greatest = control.force, max(history.result.greatest_force, abs(control.force))
-    if seats and force < -faint_force(history.rod, greatest):
+    if on_seats and force < -faint_force(history.rod, greatest):
         return replace(state, reason="the spring is free there, and seats cannot pull")
-    estimate = None if taken is None else taken.outcome.estimate
-    error = None if estimate is None else abs(estimate.force if kind == "length" else estimate.height)
     shot = replace(recorder.snapshot(f"working, {state.label}"), force=force)
-    return replace(
-        state,
-        length=control.height,
-        force=force + 0.0,
-        rate=_rate(history),
-        error=error if error is not None and math.isfinite(error) else None,
-        seats=recorder.seat_reactions(len(history.result.steps), greatest),
-        snapshot=shot,
-    )
+    seats = recorder.seat_reactions(len(history.result.steps), greatest)
+    return replace(state, rate=_rate(history), step=way.last, seats=seats, snapshot=shot)
 
 
 def _rate(history: LoadHistory) -> float:
     """Slope of the force on further compression, by a travel of a thousandth of the free length; collective."""
     continuation, control = history.continuation, history.control
     travel, force = continuation.control.probe * history.spring.free_length, control.force
-    outcome, after = continuation.probe(control.to_height(control.height - travel), lambda: control.trial_force)
+    outcome, after = continuation.probe(control.to_travel(travel), lambda: control.trial_force)
     return (after - force) / travel if outcome.converged else math.nan

@@ -1,7 +1,6 @@
 """Errors by mesh, section rule and contact against the differences to finer runs."""
 
 import json
-from types import SimpleNamespace
 
 import pytest
 from mpi4py import MPI
@@ -103,16 +102,23 @@ def test_contact_is_off_by_what_a_stiffer_bedding_changes(example):
     assert 0.5 < summary["estimated_errors"]["contact"]["force_N"] / true < 2.0
 
 
+def test_the_contacts_error_does_not_depend_on_the_steps(example):
+    """At block, which an elastic spring reaches in any steps; a secant over the last of two had a fifth of it."""
+    found = []
+    for steps in (2, 30):
+        loading = f"loading=[{{to: block, steps: {steps}}}, {{to: {{force: 0}}, steps: 1}}]"
+        _, summary = analysed(example, "material=elastic", loading)
+        found.append(summary["estimated_errors"]["contact"]["force_N"])
+    assert found[0] == pytest.approx(found[1], rel=1e-3)
+
+
 def test_a_bedding_in_series_with_a_spring_is_off_by_all_that_it_takes():
     """F = s/(1/k + c); rigid contacts give k s, which is greater by k c F."""
-    stiffness, compliance, ends = 800.0, 1.0 / 900.0, (0.999, 1.0)
-    seen = []
-    for travel in ends:
-        force = travel / (1.0 / stiffness + compliance)
-        step = SimpleNamespace(travel_mm=travel, force_N=force)
-        seen.append(error_estimates._Seen(step, 0.0, 0.0, 0.5 * compliance * force**2, compliance * force))
-    true = stiffness * ends[1] - force
-    assert error_estimates._contact_force(seen, 1) / error_estimates.RIGID == pytest.approx(true, rel=1e-3)
+    stiffness, compliance, travel = 800.0, 1.0 / 900.0, 1.0
+    force = travel / (1.0 / stiffness + compliance)
+    slope = compliance * force**2 / travel  # of ½ c F²
+    true = stiffness * travel - force
+    assert error_estimates._with_rigid_contacts(slope, force) / error_estimates.RIGID == pytest.approx(true, rel=1e-3)
 
 
 def test_elastic_warping_is_off_by_what_free_warping_changes():

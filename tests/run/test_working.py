@@ -57,6 +57,19 @@ def test_a_load_program_that_goes_there_finds_the_same(example, there):
     assert abs(found["working_set_mm"]) < 1e-4 * 35.0
 
 
+def test_the_force_at_a_length_has_the_whole_error_of_the_force_there(example):
+    """That of the maximum force at the same height: most of it by few section points."""
+    settings = [*MADE[:-1], f"loading=[{PRESSED}]", "ends=clamped", "accuracy=50 %", "working={lengths: [23, 26]}"]
+    analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
+    analysis.run()
+    found = summarise(analysis.setup, analysis.result)
+    entry = found["working"][0]
+    assert entry["force_N"] == pytest.approx(found["force_max_N"], rel=1e-3)
+    assert entry["estimated_error"] == pytest.approx(found["estimated_force_error_N"], rel=0.5)
+    mesh = found["estimated_errors"]["mesh"]["force_N"]
+    assert entry["estimated_error"] > 3.0 * mesh
+
+
 def test_a_length_beyond_the_presetting_flows_again_and_one_above_the_free_length_is_not_reached(example):
     analysis = run(example, "{to: {travel: 8}, steps: 4}, {to: {force: 0}, steps: 2}", "working={lengths: [34.9, 20]}")
     found = summarise(analysis.setup, analysis.result)

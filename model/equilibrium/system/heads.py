@@ -133,6 +133,12 @@ class Heads:
         """The load that brings the spring to an axial force, compression positive, N."""
         return self.load({}, {AXIAL: -force})
 
+    def to_travel(self, travel: float) -> Load:
+        """The load that compresses the spring by a further travel, mm, all else held or under the force it has now."""
+        forces = enumerate(self.reactions("equilibrium").tolist())
+        kept = {one: force for one, force in forces if one != AXIAL and int(self.dofs[one]) not in self.held}
+        return self.load({AXIAL: self.freedom_at(self.height - travel)}, kept)
+
     def freedom_at(self, height: float) -> float:
         """Value of the axial freedom at a height, mm."""
         return self._level("equilibrium") + (height - self.height)

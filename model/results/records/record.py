@@ -1,7 +1,7 @@
 """The results of a run as frozen records, which writers, figures and checkpoints take."""
 
 import math
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from typing import Any, Literal
 
@@ -468,19 +468,16 @@ class WorkingState:
     Attributes:
         kind, value: what the case gives, `length` in mm or `force` in N.
         reason: why the spring cannot be there; empty if it is.
-        length, force, rate: of the spring there, mm, N and N/mm; NaN where it is not.
-        error: estimated size of the error of the force at a length, N, or of the length under a force, mm; None where
-            it is not known.
-        seats: SeatReactions; snapshot: Snapshot. None where the spring is not there.
+        rate: of the spring there, N/mm; NaN where it is not.
+        step: Step that leads there, with the errors there; seats: SeatReactions; snapshot: Snapshot. None where the
+            spring is not there.
     """
 
     kind: Literal["length", "force"]
     value: float
     reason: str = ""
-    length: float = float("nan")
-    force: float = float("nan")
     rate: float = float("nan")
-    error: float | None = None
+    step: Step | None = None
     seats: SeatReactions | None = None
     snapshot: Snapshot | None = None
 
@@ -488,6 +485,24 @@ class WorkingState:
     def label(self) -> str:
         """In words."""
         return f"{self.value:g} {'mm' if self.kind == 'length' else 'N'}"
+
+    @property
+    def length(self) -> float:
+        """Of the spring there, mm; NaN where it is not."""
+        return self.step.seat_height_mm if self.step else math.nan
+
+    @property
+    def force(self) -> float:
+        """Under which it is there, N; NaN where it is not."""
+        return self.step.force_N if self.step else math.nan
+
+    @property
+    def error(self) -> float | None:
+        """Size of the error of the force at a length, N, or of the length under a force, mm, by all causes; None where
+        it is not known."""
+        if self.step is None:
+            return None
+        return self.step.estimated_force_error_N if self.kind == "length" else self.step.estimated_height_error_mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -506,18 +521,6 @@ class Working:
     def reached(self) -> tuple[WorkingState, ...]:
         """Those at which the spring can be."""
         return tuple(state for state in self.states if not state.reason)
-
-    def with_errors(self, other: "Working | None") -> "Working":
-        """With what another mesh's states differ by added to their errors; other None: they are not known."""
-        others = {(state.kind, state.value): state for state in other.reached} if other else {}
-
-        def total(state: WorkingState) -> float | None:
-            twin = others.get((state.kind, state.value))
-            if twin is None or state.error is None:
-                return None
-            return state.error + abs(twin.force - state.force if state.kind == "length" else twin.length - state.length)
-
-        return replace(self, states=tuple(replace(state, error=total(state)) for state in self.states))
 
 
 @dataclass(frozen=True)
