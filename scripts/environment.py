@@ -3,10 +3,13 @@
 Any Python 3 answers, from its standard input, so that this folder is none of those in which it looks for modules.
 """
 
-import importlib.metadata
-import importlib.util
-import os
 import sys
+
+sys.path[:] = filter(None, sys.path)  # without the working directory
+
+import importlib.metadata  # noqa: E402
+import importlib.util  # noqa: E402
+import os  # noqa: E402
 
 LEAST = (0, 9)  # DOLFINx
 

@@ -90,7 +90,7 @@ ready() { # is there an environment? Sets kind, python and the facts that this r
 complete() { # has this Python every module, and DOLFINx >= 0.9? Where it looks for them is added to the facts
     local line enough='' answer=$found.$$.answer
     # Over a file: bash does not reliably answer a signal in the midst of a substitution.
-    PYTHONPATH='' "$1" - $modules < "$scripts/environment.py" > "$answer" 2> /dev/null || true
+    PYTHONPATH='' PYTHONSAFEPATH=yes "$1" - $modules < "$scripts/environment.py" > "$answer" 2> /dev/null || true
     while read -r line; do
         case "$line" in
             enough) enough=yes ;;
@@ -167,6 +167,16 @@ enter_directly() {
         case "$OSTYPE" in linux-gnu*) hold=(env --block-signal=INT) ;; esac # held back until Python can answer Ctrl-C
         exec ${hold[@]+"${hold[@]}"} "$@"
     }
+}
+
+# Python looks for modules in the checkout and in what the user names, and not in the working directory, which an empty
+# name would mean.
+modules_of_coilset() {
+    local name names=()
+    IFS=: read -ra names <<< "${PYTHONPATH:-}"
+    PYTHONPATH=$namespace
+    for name in ${names[@]+"${names[@]}"}; do PYTHONPATH+=${name:+:$name}; done
+    export PYTHONPATH PYTHONSAFEPATH=${PYTHONSAFEPATH:-coilset}
 }
 
 link_namespace() { # `import coilset.model` finds the folder model of this checkout, without an installation

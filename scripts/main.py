@@ -6,6 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from coilset.model.base.errors import InputError
+from coilset.model.runtime.apart import OURS, SAFE_PATH
 from coilset.model.runtime.processes import number_of_ranks, usable_cores
 from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, STAGES, announce_compiling, compile_first
@@ -486,4 +487,6 @@ def test(context: typer.Context) -> None:
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def python(context: typer.Context) -> None:
     """Run a Python script, or Python itself, in the environment of the commands."""
+    if os.environ.get(SAFE_PATH) == OURS:  # a script imports from its own folder
+        del os.environ[SAFE_PATH]
     os.execv(sys.executable, [sys.executable, *context.args])

@@ -80,18 +80,15 @@ add_wheels() { # what Debian does not have, from PyPI; coilset runs without it, 
     (quietly in_root "$1" $(wheels)) || say "PyPI was not reached: sweeps write no Parquet file"
 }
 
-# The private root brings its own system folders; every other folder of this machine is seen through. This shell stays
-# above bubblewrap, which ends with it however it ends (SIGKILL too) and takes the command along. Signals are for the
-# command: bubblewrap ignores or blocks them, and this shell passes them on, from before there is a command.
+# The private root brings its own system folders; every other folder of this machine is seen through, and nothing can be
+# written into its own. This shell stays above bubblewrap, which ends with it however it ends (SIGKILL too) and takes the
+# command along. Signals are for the command: bubblewrap ignores or blocks them, and this shell passes them on, from
+# before there is a command.
 enter_private_root() {
     enter() {
-        local binds=() folder pipe ended child='' early=() signal reset=TERM
-        for folder in /*; do
-            case "$folder" in
-                /bin | /boot | /dev | /etc | /lib* | /proc | /run | /sbin | /sys | /usr | /var | /lost+found) ;;
-                *) [ -d "$folder" ] && [ ! -L "$folder" ] && binds+=(--bind "$folder" "$folder") ;;
-            esac
-        done
+        local binds=() pipe ended child='' early=() signal reset=TERM
+        folders_seen
+        refuse_unseen "$@"
         signal_in SigIgn $$ INT || reset+=,INT # ignored from above, as in a script's background: stays so
         exec {pipe}<> <(:) {ended}< "/dev/fd/$pipe" # which the command holds open for as long as it lives
         trap 'pass_on INT' INT
@@ -99,9 +96,11 @@ enter_private_root() {
         # In a shell's background, SIGINT is ignored and the input is empty: both are given back.
         (
             trap '' TERM
-            exec env --block-signal=INT bwrap --die-with-parent --bind "$private_root" / "${binds[@]}" \
-                --dev /dev --proc /proc --ro-bind /sys /sys --setenv PATH /usr/local/bin:/usr/bin:/bin --setenv LANG C.UTF-8 \
-                --setenv HOME "$HOME" --setenv COILSET_PRIVATE_ROOT 1 --chdir "$PWD" \
+            exec env --block-signal=INT bwrap --die-with-parent --bind "$private_root" / --dev /dev --proc /proc \
+                --ro-bind /sys /sys "${binds[@]}" --remount-ro / --setenv PATH /usr/local/bin:/usr/bin:/bin \
+                --setenv LANG C.UTF-8 --setenv HOME "$HOME" --setenv COILSET_PRIVATE_ROOT 1 \
+                --unsetenv PYTHONHOME --setenv PYTHONPATH "$namespace" --setenv PYTHONNOUSERSITE 1 \
+                --unsetenv LD_LIBRARY_PATH --unsetenv LD_PRELOAD --chdir "$PWD" \
                 -- env --default-signal=$reset --block-signal=INT "$@"
         ) <&0 &
         child=$!
@@ -115,6 +114,33 @@ enter_private_root() {
     }
 }
 
+folders_seen() { # appends to `binds`
+    local folder
+    for folder in /* /usr/local/* /dev/shm; do
+        [ ! -d "$folder" ] || [ -L "$private_root$folder" ] || hidden "$folder" || binds+=(--bind "$folder" "$folder")
+    done
+}
+
+hidden() { # has the private root a folder of its own in place of this machine's?
+    case "$1/" in
+        /dev/shm/ | /dev/shm/* | /dev/std* | /dev/fd/* | /dev/null/) return 1 ;;
+        /usr/local/bin/* | /usr/local/etc/* | /usr/local/include/* | /usr/local/lib* | /usr/local/sbin/*) ;;
+        /usr/local/?*/*) return 1 ;;
+        /bin/* | /boot/* | /dev/* | /etc/* | /lib* | /lost+found/* | /proc/ | /sbin/* | /sys/* | /usr/*) ;;
+        *) return 1 ;;
+    esac
+}
+
+refuse_unseen() { # words of a command that name what is hidden, the working directory, and the checkout
+    local word place
+    cd -P . 2> /dev/null || fail "the working directory is no longer there"
+    for word in "$PWD" "$repository" "$@"; do
+        place=${word##*=} # of --out=FOLDER, or of an entry of a case
+        ! hidden "$place" || { [ "$place" != "$PWD" ] && [ -e "$private_root$place" ]; } ||
+            fail "$place: cannot be seen from the private Debian, which has such folders of its own; take another place"
+    done
+}
+
 # A signal to the command in bubblewrap, as soon as there is one. An interrupt waits there, being blocked, until Python can
 # answer; SIGTERM is ignored there at first. Where the terminal sends Ctrl-C, a command that blocks it no longer has it.
 pass_on() {
@@ -122,7 +148,7 @@ pass_on() {
     [ -n "$child" ] || { early+=("$1"); return; }
     until { read -r command < "/proc/$child/task/$child/children" || [ -n "$command" ]; } 2> /dev/null &&
         { [ "$1" = INT ] || ! signal_in SigIgn "$command" "$1"; }; do
-        read -rt 0.01 -u "$ended" || (($? > 128)) || return 0 # it has ended
+        read -rt "0${EPOCHREALTIME//[0-9]/}01" -u "$ended" || (($? > 128)) || return 0 # it has ended
     done
     if [ "$1" != INT ] || ! in_foreground || signal_in SigBlk "$command" INT; then
         kill -s "$1" "$command" 2> /dev/null || true

@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
+from coilset.model.runtime.apart import thread_elsewhere
 from coilset.model.runtime.switches import enabled
 
 UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage", "meshio._cli")
@@ -80,6 +81,8 @@ def link_beside(then: Callable[[], object]) -> None:
 
 
 def _link(then: Callable[[], object]) -> None:
+    if not thread_elsewhere():  # UCX reads a file of the working directory when it is linked
+        return
     link = ctypes.CDLL(None).dlopen  # in contrast to ctypes' own, called without Python's lock
     for package, module in (("mpi4py", "MPI"), ("dolfinx", "cpp")):
         for folder in getattr(find_spec(package), "submodule_search_locations", None) or ():

@@ -31,7 +31,10 @@ from coilset.scripts.terminal.progress import VOICES, Lines
 from coilset.scripts.terminal.target import results_folder
 
 log = logging.getLogger("coilset.steps")
-STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
+try:
+    STARTED = float(os.environ["COILSET_STARTED"])  # s, by scripts/coilset
+except (KeyError, ValueError):
+    STARTED = time.time()
 
 
 def solve(

@@ -195,16 +195,10 @@ def test_a_signal_that_mpirun_drops_reaches_the_ranks_it_starts(start, example, 
 )
 def test_the_launcher_forgets_no_signal(start, tmp_path, environment):
     """It reaches the shell alone, or the Python that has taken its place; nothing goes on after it."""
-    (tmp_path / "sitecustomize.py").write_text(
-        "import os, signal, sys, time\n"
-        "if '-m' in sys.orig_argv:\n"
-        "    signal.signal(signal.SIGINT, lambda *_: os._exit(130))\n"
-        "    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])\n"
-        "    time.sleep(1000)\n"
-    )
+    (tmp_path / "wait.py").write_text("import time\ntime.sleep(1000)\n")
     for milliseconds in range(4, 52, 4):
         number = signal.SIGTERM if milliseconds % 3 == 0 else signal.SIGINT
-        running = start(coilset("solve"), PYTHONPATH=str(tmp_path), **environment)
+        running = start(coilset("python", tmp_path / "wait.py"), **environment)
         time.sleep(1e-3 * milliseconds)
         os.kill(running.process.pid, number)
         assert running.process.wait(PATIENCE) in (128 + number, -number), milliseconds

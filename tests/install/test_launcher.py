@@ -1,6 +1,8 @@
 """scripts/coilset remembers the environment it has found, and says how to get one where there is none."""
 
+import json
 import os
+import pwd
 import subprocess
 import sys
 from pathlib import Path
@@ -151,3 +153,68 @@ def test_what_a_killed_making_of_the_environment_left_mounted_is_no_obstacle(tmp
     assert (done.returncode, done.stdout, done.stderr) == (0, "1\n", "")
     assert beside.exists()
     assert not left.exists()
+
+
+WHERE = "import os, sys, json; print(json.dumps([sys.path, os.environ.get('COILSET_STARTED'), os.environ['HOME']]))"
+
+
+@pytest.fixture
+def started(tmp_path):
+    """What a Python that the launcher starts has, with variables of the environment; `-` takes one away."""
+    (tmp_path / "work").mkdir()
+
+    def start(**environment):
+        chosen = {"COILSET_PYTHON": sys.executable, "COILSET_RELEASE": "", "COILSET_CACHE": str(tmp_path / "cache")}
+        given = {name: value for name, value in (os.environ | chosen | environment).items() if value != "-"}
+        done = subprocess.run(
+            [str(LAUNCHER), "python", "-c", WHERE],
+            env=given,
+            cwd=tmp_path / "work",
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return start
+
+
+def test_a_locale_with_a_decimal_comma_is_no_obstacle(tmp_path, started):
+    """Bash writes EPOCHREALTIME as the locale does, also where it then reads it."""
+    comma = tmp_path / "comma"
+    comma.write_text("unset EPOCHREALTIME COILSET_STARTED; EPOCHREALTIME=1795852767,644523\n")
+    assert started(BASH_ENV=str(comma))[1] == "1795852767.644523"
+
+
+@pytest.mark.parametrize("time", ["1795852767,644523", "", "soon"])
+def test_a_time_that_is_no_number_ends_no_command(time):
+    program = "from coilset.scripts.commands.solve import STARTED; assert STARTED > 1e9"
+    subprocess.run([sys.executable, "-c", program], env=os.environ | {"COILSET_STARTED": time}, check=True)
+
+
+@pytest.mark.parametrize("home", ["-", ""])
+def test_without_a_home_it_is_that_of_the_user(home, started):
+    expected = pwd.getpwuid(os.getuid()).pw_dir
+    assert started(HOME=home)[2] == expected
+
+
+@pytest.mark.parametrize("names", ["", ":", "/somewhere:", "::/somewhere"])
+def test_an_empty_name_in_the_path_of_modules_is_not_the_working_directory(tmp_path, started, names):
+    """`-c` puts the working directory first by itself, as an empty name."""
+    found = started(PYTHONPATH=names)[0]
+    assert str(tmp_path / "work") not in found
+    assert found.count("") == 1
+    assert ("/somewhere" in found) is ("/somewhere" in names)
+
+
+def test_a_module_beside_the_case_is_not_run(tmp_path):
+    """Neither by the command nor while an environment is looked for; `coilset python` runs a script with its folder."""
+    for name in ("yaml.py", "csv.py", "statistics.py"):
+        (tmp_path / name).write_text("raise SystemExit(7)\n")
+    (tmp_path / "own.py").write_text("import yaml\n")
+    chosen = {"COILSET_PYTHON": sys.executable, "COILSET_RELEASE": "", "COILSET_CACHE": str(tmp_path / "cache")}
+    for arguments, code in ((["examples"], 0), (["mesh", "none.yaml"], 2), (["python", "own.py"], 7)):
+        command = [str(LAUNCHER), *arguments]
+        done = subprocess.run(command, env=os.environ | chosen, cwd=tmp_path, capture_output=True, check=False)
+        assert done.returncode == code, done.stderr
