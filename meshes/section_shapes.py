@@ -16,6 +16,7 @@ import numpy as np
 from coilset.model.base.columns import number, read_rows
 from coilset.model.base.errors import InputError, naming
 
+THINNEST = 0.01  # wall of a tube, over its outer diameter
 CLOSEST = 1e-6  # distance below which two points of an outline are one, over its size
 
 
@@ -61,6 +62,13 @@ class Tube:
         _positive(outer=self.outer, inner=self.inner)
         if not self.inner < self.outer:
             raise InputError(f"{self.inner:g} mm is no inner diameter of a tube of {self.outer:g} mm", "section.inner")
+        thickest = (1.0 - 2.0 * THINNEST) * self.outer
+        if self.inner > thickest:
+            raise InputError(
+                f"leaves a wall of {0.5 * (self.outer - self.inner):.3g} mm; it must be {100.0 * THINNEST:g} % of the "
+                f"outer diameter or more: give {thickest:g} mm or less",
+                "section.inner",
+            )
 
     @property
     def hole(self) -> float:

@@ -61,9 +61,10 @@ class Axis:
             x, y = moved[:, 0], moved[:, 1]
             angle = np.unwrap(np.arctan2(y, x))
             turn = np.abs(angle - angle[0]) / (2.0 * np.pi)
-            inner = np.linspace(0.0, turn[-1], max(int(turn[-1]), 1) + 1)
-            knots = np.concatenate([[0.0] * CUBIC, inner, [turn[-1]] * CUBIC])
-            weight = np.sqrt(np.gradient(turn))  # a fit over the wire, however its points are spaced
+            inner = np.linspace(0.0, turn.max(), max(int(turn.max()), 1) + 1)
+            knots = np.concatenate([[0.0] * CUBIC, inner, [turn.max()] * CUBIC])
+            # a fit over the wire, however its points are spaced; about a far axis, on trial, they may go back
+            weight = np.sqrt(np.maximum(np.gradient(turn), 0.0))
             spline = BSpline.design_matrix(turn, knots, CUBIC).toarray() * weight[:, None]
             radius = np.hypot(x, y) * weight
             coefficients = np.linalg.lstsq(spline, radius, rcond=None)[0]

@@ -73,12 +73,14 @@ class MeasuredSpec(Strict):
         if points[-1, 2] < points[0, 2]:  # the bottom end comes first
             points, wire, numbers = points[::-1], wire[::-1], numbers[::-1]
         turn, hand, phase = _turns(points, numbers, path)
+        places = _places(points)
+        _refuse_outlier(turn, places, np.full(len(wire), np.median(places[:, 0])), numbers, path)  # of which none is
         axis = Axis.of(points, turn[-1])
         if axis is not None:
             points = axis.moved(points)
             turn, hand, phase = _turns(points, numbers, path)
-        places = np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])  # radius and height
-        _refuse_outlier(turn, places, wire, numbers, path)
+            places = _places(points)
+        _refuse_outlier(turn, places, OFF * wire, numbers, path)
         _refuse_odd_wire(wire, numbers, path)
         # radius and height have the same noise as a coordinate
         fit = functions.smoothed if self.noise > 0 else lambda t, y, noise: functions.tabulated(t, y, "spline")
@@ -206,13 +208,18 @@ def _turns(points: np.ndarray, numbers: np.ndarray, path: str | Path) -> tuple[n
     return np.concatenate([[0.0], np.cumsum(np.abs(step))]) / (2 * np.pi), hand, float(angle[0])
 
 
-def _refuse_outlier(turn: np.ndarray, places: np.ndarray, wire: np.ndarray, numbers: np.ndarray, path: Path) -> None:
+def _places(points: np.ndarray) -> np.ndarray:
+    """Radius and height of points, shape (n, 2), mm."""
+    return np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])
+
+
+def _refuse_outlier(turn: np.ndarray, places: np.ndarray, far: np.ndarray, numbers: np.ndarray, path: Path) -> None:
     """Refuse a point that is far off the cubic through its four neighbours in radius or height, as a misprint is.
 
     Args:
         turn: of the points, shape (n,).
         places: radius and height, mm, shape (n, 2).
-        wire: wire diameters, mm.
+        far: of each point, how far off it may lie even if the others do not, mm.
         numbers: of the points in the file.
         path: the file.
     """
@@ -224,7 +231,7 @@ def _refuse_outlier(turn: np.ndarray, places: np.ndarray, wire: np.ndarray, numb
     off = np.abs(places[inner] - fitted).max(axis=1)
     worst = int(np.argmax(off))
     i = inner[worst]
-    if off[worst] > max(OFF * wire[i], TIMES * float(np.median(off))):
+    if off[worst] > max(far[i], TIMES * float(np.median(off))):
         raise InputError(
             f"lies {off[worst]:.2g} mm off the curve through its neighbours, the others {np.median(off):.1g} mm; "
             "correct it or leave it out",

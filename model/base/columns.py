@@ -65,16 +65,16 @@ def number(text: str | None) -> float:
 
 
 def read_rows(path: str | Path) -> list[tuple[int, list[str]]]:
-    """The rows of a CSV file that are not empty, with the numbers of their lines; first lines with # are comments.
+    """The rows of a CSV file that are not empty, with the numbers of their lines; lines that begin with # are comments.
 
     Raises:
         InputError: if it cannot be read.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8-sig").splitlines()
-        start = next((k for k, line in enumerate(text) if not line.startswith("#")), len(text))
-        reader = csv.reader(text[start:], delimiter=_separator(text[start:]), strict=True)
-        return [(start + reader.line_num, row) for row in reader if any(map(str.strip, row))]
+        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        lines = ["" if line.startswith("#") else line for line in lines]
+        reader = csv.reader(lines, delimiter=_separator(lines), strict=True)
+        return [(reader.line_num, row) for row in reader if any(map(str.strip, row))]
     except UnicodeDecodeError:
         raise InputError("it is not a text file in UTF-8", "", path) from None
     except (OSError, csv.Error) as error:
@@ -82,7 +82,7 @@ def read_rows(path: str | Path) -> list[tuple[int, list[str]]]:
 
 
 def read_columns(path: str | Path) -> Columns:
-    """Read a CSV file with a header; lines above it that begin with # are comments.
+    """Read a CSV file with a header; lines that begin with # are comments.
 
     Raises:
         InputError: if it cannot be read, or a row has more cells than the header.

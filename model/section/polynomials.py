@@ -56,8 +56,9 @@ class Basis:
         powers = exponents(degree)
         plain = cls(powers, np.eye(len(powers)), origin, axes)
         values = plain.monomials(places)[0]
-        moments = values.T @ (weights[:, None] * values) / weights.sum()
-        return cls(powers, np.linalg.inv(np.linalg.cholesky(moments)), origin, axes)
+        # R is Cholesky's factor of the moments, without squaring how near the monomials are to each other in a thin wall
+        R = np.linalg.qr(np.sqrt(weights / weights.sum())[:, None] * values)[1]
+        return cls(powers, np.linalg.inv(np.sign(np.diag(R))[:, None] * R).T, origin, axes)
 
     def monomials(self, places: np.ndarray) -> np.ndarray:
         """Monomials and their slopes in y and z at points, shape (m, 2) → (3, m, n)."""

@@ -15,6 +15,7 @@ from coilset.model.vibration.surge import SPECTRAL_RADIUS, Energies, Motion
 
 MOST_STEPS = 1_000_000
 LIGHT = 1e-6  # of its density has a wire that is pressed slowly: its waves are a thousand times as fast
+FEWEST = 8  # steps in a lift: with fewer the run with steps twice as long hardly sees it
 A_PERIOD, AFTERWARDS = 20, 5.0  # steps in a period of the first axial mode, and periods after the lift, if not given
 
 
@@ -106,6 +107,11 @@ def driven(
     step = 1.0 / (A_PERIOD * axial) if step is None else step
     seconds = lift.seconds + AFTERWARDS / axial if seconds is None else seconds
     _check(seconds, 2.0 * step, "--step")
+    if lift.seconds < FEWEST * step * (1.0 - 1e-9):
+        raise InputError(
+            f"{step:.3g} s, but the lift is over in {lift.seconds:.3g} s; give {lift.seconds / FEWEST:.3g} s or less",
+            "--step",
+        )
     pairs = int(np.ceil(seconds / (2.0 * step)))
     density, found = case_elastic(last.case, last.law).density, []
     kinds = (("slowly", 2, LIGHT), ("with long steps", 2, 1.0), ("with short steps", 1, 1.0))

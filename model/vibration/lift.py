@@ -43,7 +43,8 @@ def valve_lift(lift: float, speed: float, opening: float) -> Lift:
     """
     for name, value, most in (("lift", lift, np.inf), ("speed", speed, np.inf), ("opening", opening, 360.0)):
         if not 0.0 < value <= most or not np.isfinite(value):
-            raise InputError(f"{value:g} is not possible; give a positive number", f"--{name}")
+            limit = "" if most == np.inf else f" up to {most:g}"
+            raise InputError(f"{value:g} is not possible; give a positive number{limit}", f"--{name}")
     seconds = opening / 360.0 * 2.0 * 60.0 / speed
 
     def travel(time: float) -> float:
@@ -66,6 +67,12 @@ def read_lift(path: str | Path) -> Lift:
     time, travel = table.numbers("time_s"), table.numbers("travel_mm")
     if len(time) < 2 or time[0] != 0.0 or travel[0] != 0.0 or not (np.diff(time) > 0.0).all():
         raise InputError("needs two rows or more, the first of zeros, with times that grow", COLUMNS, path)
+    if not travel.any():
+        raise InputError("the head never moves", "travel_mm", path)
+    with np.errstate(all="ignore"):
+        slopes = np.diff(travel) / np.diff(time)
+        if not np.isfinite(slopes @ slopes):  # what the spline computes with
+            raise InputError("no head moves as fast as this", f"row {int(np.abs(slopes).argmax()) + 2}", path)
     curve = CubicSpline(time, travel)
     last = float(time[-1])
     return Lift(lambda t: float(curve(min(t, last))), last, float(travel.max()), f"the travel of {Path(path).name}")

@@ -106,7 +106,8 @@ def _say_driven(console: Console, found: Driven) -> None:
         values = (numbers[f"{end}_force_{name}_N"] for name in ("max", "max_slowly", "min"))
         table.add_row(f"force, {end} end", *(f"{value:.1f}" for value in values))
     console.print(table)
-    share = 100.0 * numbers["lost_in_steps_Nmm"] / numbers["supplied_max_Nmm"]
+    most = float(np.abs(found.fine.supplied).max())  # of a head that only draws back from a free spring nothing
+    share = 100.0 * numbers["lost_in_steps_Nmm"] / most if most else 0.0
     console.say(
         f"error of the forces by the steps of time about {numbers['force_error_N']:.2g} N; these lost {share:.2g} % of "
         f"the energy supplied"

@@ -55,6 +55,24 @@ def scan(spec, change, path):
 CYLINDER = {"wire_diameter": WIRE, "mean_diameter": D, "turns": TURNS, "pitch": PITCH}
 
 
+@pytest.mark.parametrize("factor", [1e3, 1e4, 1e7, 1e9])
+@pytest.mark.parametrize("column", [0, 2])
+def test_a_number_of_other_size_is_refused_before_the_axis_is_sought(factor, column, tmp_path, capfd):
+    """A decimal point left out: about trial axes as far away the points went back, and LAPACK gave up."""
+    path = tmp_path / "scan.csv"
+
+    def misprint(points):
+        points[66, column] *= factor
+        return points
+
+    _, measured = scan(CYLINDER, misprint, path)
+    with pytest.raises(InputError, match=r"scan.csv: point 6[5-9]: "):
+        measured.build()
+    assert capfd.readouterr().err == ""
+
+
+
+
 @pytest.mark.parametrize("name", SCANS)
 def test_rigid_motions_ovality_and_noise_leave_block_and_turns(name, tmp_path):
     change, offset, tilt = SCANS[name]

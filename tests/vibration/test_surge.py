@@ -170,7 +170,15 @@ def test_a_lift_and_its_files(tmp_path):
         read_lift(tmp_path / "wrong.csv")
     with pytest.raises(InputError, match="--speed: -1 is not possible"):
         valve_lift(0.5, -1.0, 90.0)
+    with pytest.raises(InputError, match="--opening: 720 is not possible; give a positive number up to 360"):
+        valve_lift(0.5, 1.0, 720.0)
+    for rows, problem in (("0.002,1e308\n0.004,0", "row 2: no head moves"), ("0.1,0", "travel_mm: the head never moves")):
+        (tmp_path / "wrong.csv").write_text(f"time_s,travel_mm\n0,0\n{rows}\n")
+        with pytest.raises(InputError, match=problem):
+            read_lift(tmp_path / "wrong.csv")
 
+    with pytest.raises(InputError, match=r"--step: 0.001 s, but the lift is over in 0.005 s; give 0.000625 s or less"):
+        driven(lambda: spring(turns=3.0), read, step=1e-3)  # in one step nothing was supplied, and that was divided by
     rest = spring(turns=3.0).control.height
     found = driven(lambda: spring(turns=3.0), read, step=1e-4, seconds=0.0051)
     assert len(found.fine.time) == 53  # pairs of steps

@@ -3,7 +3,8 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.tri import LinearTriInterpolator, Triangulation
+from scipy.interpolate import LinearNDInterpolator
+from scipy.spatial import Delaunay
 
 from coilset.model.base.style import round_end
 from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, with_unit
@@ -47,10 +48,10 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
     corners = outline(run)
     section = FilledSection(np.stack([y, z], axis=-1) / radius, corners)
     fields = [_stresses(run, number, element, section) for number in range(len(run.snapshots))]
-    traces = []
+    triangles, traces = Delaunay(section.places * radius), []
     for number, both in enumerate(fields):
         end = round_end(max(LEAST_SCALE, *(float(np.abs(field).max()) for field in both)))
-        traces.append(_map(section.places * radius, both[which], radius, end, number, corners))
+        traces.append(_map(triangles, both[which], radius, end, number, corners))
     dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
     traces.append({**dots, "hoverinfo": "skip", "showlegend": False})
     low, high = (with_unit(float(f(fields[-1][which])), "").strip() for f in (np.min, np.max))
@@ -83,7 +84,7 @@ def _stresses(run: Run, snapshot: int, element: int, section: FilledSection) -> 
 
 
 def _map(
-    places: np.ndarray, values: np.ndarray, radius: float, end: float, choice: int, corners: np.ndarray | None
+    triangles: Delaunay, values: np.ndarray, radius: float, end: float, choice: int, corners: np.ndarray | None
 ) -> Trace:
     """Values on a grid of pixels; beyond the rim those of the rim, or none if the wire is not round."""
     reach = radius * _reach(corners)
@@ -91,8 +92,7 @@ def _map(
     y, z = np.meshgrid(line, line)
     distance = np.hypot(y, z)
     within = np.minimum(1.0, WITHIN * radius / np.maximum(distance, 1e-12)) if corners is None else 1.0
-    triangles = Triangulation(*places.T)
-    field = LinearTriInterpolator(triangles, values)(y * within, z * within).filled(np.nan)
+    field = LinearNDInterpolator(triangles, values)(y * within, z * within)
     if corners is None:
         field[distance > BEYOND * radius] = np.nan
     return {
