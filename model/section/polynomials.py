@@ -56,7 +56,7 @@ class Basis:
         powers = exponents(degree)
         plain = cls(powers, np.eye(len(powers)), origin, axes)
         values = plain.monomials(places)[0]
-        # R is Cholesky's factor of the moments, without squaring how near the monomials are to each other in a thin wall
+        # R is Cholesky's factor of the moments, which would square how near the monomials are to each other in a wall
         R = np.linalg.qr(np.sqrt(weights / weights.sum())[:, None] * values)[1]
         return cls(powers, np.linalg.inv(np.sign(np.diag(R))[:, None] * R).T, origin, axes)
 

@@ -172,7 +172,7 @@ def test_a_lift_and_its_files(tmp_path):
         valve_lift(0.5, -1.0, 90.0)
     with pytest.raises(InputError, match="--opening: 720 is not possible; give a positive number up to 360"):
         valve_lift(0.5, 1.0, 720.0)
-    for rows, problem in (("0.002,1e308\n0.004,0", "row 2: no head moves"), ("0.1,0", "travel_mm: the head never moves")):
+    for rows, problem in (("0.002,1e308\n0.004,0", "row 2: no head moves"), ("0.1,0", "the head never moves")):
         (tmp_path / "wrong.csv").write_text(f"time_s,travel_mm\n0,0\n{rows}\n")
         with pytest.raises(InputError, match=problem):
             read_lift(tmp_path / "wrong.csv")
