@@ -1,4 +1,4 @@
-"""What a law refuses: entries that do not go together, and functions that violate a condition of the theory."""
+"""What a law refuses: entries that do not go together, other units, and functions that violate the theory."""
 
 from collections.abc import Callable
 from typing import NoReturn
@@ -42,6 +42,58 @@ def _check_rate(data: MaterialFile, refuse: Refuse) -> None:
             "of it to the rate of stress, so that none or two rates satisfy both while a point beyond the yield "
             "surface is unloaded; make non_normality 'none', or remove rate",
         )
+
+
+# Numbers outside of these are in Pa, GPa or psi. The softest solids of which springs are made are plastics, G of 700
+# N/mm² and more, the stiffest is diamond with 540,000. No solid yields above an ideal strength of about G/4 (Frenkel),
+# and pure, soft metals harden to several 1e-4 G. Back stresses begin with slopes of up to a hundred times G.
+SHEAR_MODULI = (500.0, 600e3)  # N/mm²
+STRESSES = (1e-4, 1.0)  # of G
+STEEPEST = 1e3  # of G
+
+
+def check_moduli(data: MaterialFile, refuse: Refuse) -> None:
+    """Refuse a file with a shear modulus that no solid has, as it is not in N/mm²."""
+    for i, at in enumerate(data.temperatures):
+        _within(at.elasticity.G, *SHEAR_MODULI, f"temperatures.{i}.elasticity.G", "the shear modulus", refuse)
+
+
+def check_stresses(data: MaterialFile, functions: Functions, refuse: Refuse) -> None:
+    """Refuse a file with a stress that no solid has, beside its shear modulus.
+
+    Args:
+        data: the material file.
+        functions: Functions of its law.
+        refuse: Refuse.
+    """
+    for i, at in enumerate(data.temperatures):
+        G, place = at.elasticity.G, f"temperatures.{i}"
+        slopes = [(f"kinematic.terms.{k}.C", one.C) for k, one in enumerate(at.terms)]
+        if at.isotropic != "none":
+            with np.errstate(all="ignore"):
+                k2, _, zeta, *_ = functions(np.linspace(0.0, data.validity.plastic_work, 201), at.temperature)
+            _stress(float(np.sqrt(1.5 * k2.max())), G, f"{place}.isotropic", "the greatest yield stress", refuse)
+            slopes += [("kinematic", float(zeta.max()))]
+        for entry, slope in slopes:
+            _within(slope, 0.0, STEEPEST * G, f"{place}.{entry}", "the slope of a back stress", refuse)
+    G = data.temperatures[0].elasticity.G
+    if data.tensile_strength is not None:
+        _stress(data.tensile_strength, G, "tensile_strength", "the strength", refuse)
+    if data.creep is not None:
+        _within(data.creep.stress, 0.0, STRESSES[1] * G, "creep.stress", "the reference stress", refuse)
+        if data.creep.tests is not None:
+            _stress(data.creep.tests.stress[1], G, "creep.tests.stress", "the greatest stress", refuse)
+
+
+def _stress(value: float, G: float, place: str, name: str, refuse: Refuse) -> None:
+    _within(value, STRESSES[0] * G, STRESSES[1] * G, place, name, refuse)
+
+
+def _within(value: float, low: float, high: float, place: str, name: str, refuse: Refuse) -> None:
+    if np.isfinite(value) and not low <= value <= high:  # what overflows is refused by `check_functions`
+        unit = "Pa" if value > high else "GPa"
+        beyond = f"above {high:.3g}" if value > high else f"below {low:.3g}"
+        refuse(place, f"{name} is {value:.4g} N/mm², {beyond} N/mm², as in {unit}; give all stresses in N/mm² = MPa")
 
 
 ROUNDING = 1e-12  # of G, in the slope of a curve that has saturated

@@ -202,7 +202,7 @@ class Table(Strict):
             return "a table needs a point at plastic strain 0, where yielding begins, and one beyond"
         if strain[0] > 0.0:
             first = f"the first point has a plastic strain of {strain[0]:.3g} already"
-            return f"{first}: give one that is still elastic, or check the elastic constants"
+            return f"{first}: give one that is still elastic, or check the elastic constants and the units"
         not_ascending, falls = np.diff(strain) <= 0.0, np.diff(stress) < 0.0
         for what, values, wrong in (
             ("plastic strain does not ascend", strain, not_ascending),

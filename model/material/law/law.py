@@ -11,7 +11,7 @@ import numpy.typing as npt
 from coilset.model.base.entry import Strict
 from coilset.model.base.errors import InputError
 from coilset.model.material.law import functions as fn
-from coilset.model.material.law.checks import check_combinations, check_functions
+from coilset.model.material.law.checks import check_combinations, check_functions, check_moduli, check_stresses
 from coilset.model.material.law.file import UNITS, Chaboche, Constants, MaterialFile
 from coilset.model.material.law.hardening_curves import AnyCurve
 from coilset.model.material.law.parts import CREEP_ENTRIES, Parts, further_columns
@@ -34,12 +34,16 @@ class Law:
     def __init__(self, data: MaterialFile, spin: bool = False, file: str | Path = "") -> None:
         self.data, self.spin, self.file = data, spin, str(file)
         self._temperatures = np.array([at.temperature for at in data.temperatures])
+        if self.file:  # numbers that somebody wrote, and not those that a search tries
+            check_moduli(data, self.refuse)
         self._curves: dict[int, np.ndarray] = {}  # of the temperatures whose k² is given by points
         self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
         check_combinations(data, self.refuse)
         self._terms = np.array(
             [[(2.0 / 3.0 * one.C, one.gamma) for one in at.terms] for at in data.temperatures], dtype=float
         )
+        if self.file:
+            check_stresses(data, self.functions, self.refuse)
         check_functions(data, self.functions, self.refuse)
 
     @property
