@@ -35,6 +35,7 @@ import yaml
 from mpi4py import MPI
 
 from coilset.model.base.agreement import on_first_rank
+from coilset.model.base.entry import shortened
 from coilset.model.base.errors import CoilsetError, InputError, SolveError, reading
 from coilset.model.case.case import Case as CheckedCase
 from coilset.model.case.case import check, read_case
@@ -384,6 +385,11 @@ def solve(
     checked = Case._given(case)
     if law is not None and not isinstance(law, OwnLaw):
         raise InputError(f"must be a Law, as Law(update) makes one of a function, not {type(law).__name__}", "law")
+    if contacts is not None and not callable(contacts):
+        problem = "must be a function of the wire's points and the stations that gives contacts"
+        raise InputError(f"{problem}, not {type(contacts).__name__}", "contacts")
+    if not (isinstance(steps, type) and issubclass(steps, StepSizes)):
+        raise InputError(f"must be a class made from StepSizes, not {shortened(repr(steps))}", "steps")
     first = Analysis(checked, comm, threads=threads or usual(comm.size), law=law, contacts=contacts, steps=steps)
     try:
         return _result(within_accuracy(first, lambda one, _: one.run(report)))
@@ -514,11 +520,13 @@ def surge(
     return drive(analysis, height, seconds, step, spectral_radius)
 
 
-def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwrite: bool = False) -> xr.Dataset:
+def sweep(
+    plan: str | Path | Mapping[str, Any], folder: str | Path, jobs: int | None = None, overwrite: bool = False
+) -> xr.Dataset:
     """Run the cases of a sweep file that its folder does not hold yet, in processes of this machine.
 
     Args:
-        plan: the sweep file.
+        plan: the sweep file, or its entries; paths in these count from the working directory.
         folder: the sweep's folder: journal and data set; cases that it holds already are not run again.
         jobs: number of processes; default is one for each core.
         overwrite: discard the cases that the folder holds.

@@ -10,7 +10,7 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.model.base.agreement import max_of_ranks
-from coilset.model.base.entry import check_entries
+from coilset.model.base.entry import check_entries, shortened
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.body.state import State
 from coilset.model.case import Case
@@ -108,7 +108,7 @@ class LoadHistory:
         if contacts is not None:
             radius, lengths = 0.5 * spring.wire_diameter(wire.turns), np.diff(spring.arc_length(wire.turns))
             points = CentreLine(wire.turns, radius, lengths).points()
-            kinds.extend(contacts(points, self.rod.line.stations))
+            kinds.extend(_contacts(contacts(points, self.rod.line.stations)))
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, kinds, seats_at(spring.free_length))
         least_radius = float(wire.radius.min())
@@ -322,3 +322,17 @@ class LoadHistory:
     def imbalance(self) -> tuple[float, float]:
         """Largest imbalance over all cuts now, N and N mm; see coilset.model.run.balance; collective."""
         return imbalance(self.snapshot("balance"), self.system, self.control)
+
+
+def _contacts(made: object) -> list[Contact]:
+    """What a function has made of kinds of contact.
+
+    Raises:
+        InputError: it is no list of them.
+    """
+    if not isinstance(made, Sequence):
+        raise InputError(f"gives a {type(made).__name__}; it must give a list of kinds of Contact", "contacts")
+    other = [one for one in made if not isinstance(one, Contact)]
+    if other:
+        raise InputError(f"gives a list with {shortened(repr(other[0]))}, which is no kind of Contact", "contacts")
+    return list(made)

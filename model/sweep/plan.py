@@ -3,7 +3,7 @@
 import copy
 import hashlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -31,7 +31,7 @@ class Plan:
     """A sweep file, read and checked, and its cases.
 
     Args:
-        path: the sweep file.
+        path: the sweep file, or its entries; paths in these count from the working directory.
         kept: a file with the keys as `keep` wrote them; if it is that of this plan, the cases are not checked again,
             which takes 0.3 ms each.
         shard: only its cases are checked, and those of the others have empty keys, unless `kept` has them.
@@ -50,14 +50,16 @@ class Plan:
             input; one line with file, place and value.
     """
 
-    def __init__(self, path: str | Path, kept: Path | None = None, shard: Shard = WHOLE) -> None:
-        self.path = Path(path)
-        kind = "a sweep file holds the entries case: and vary:"
-        self.spec = check_entries(read_data(path, kind), SweepSpec, path)
+    def __init__(self, path: str | Path | Mapping[str, Any], kept: Path | None = None, shard: Shard = WHOLE) -> None:
+        if isinstance(path, Mapping):
+            data, self.path = copy.deepcopy(dict(path)), Path("sweep")
+        else:
+            data, self.path = read_data(path, "a sweep file holds the entries case: and vary:"), Path(path)
+        self.spec = check_entries(data, SweepSpec, self.path)
         self.case_path = self.path.parent / self.spec.case
         self.base = read_case_data(self.case_path)
         self.names = list(self.spec.vary)
-        with naming(path):
+        with naming(self.path):
             for entry, value in self.spec.change.items():
                 put(self.base, entry, self._located(entry, value), f"change.{entry}")
             self.base_values = {name: self._base_value(name) for name in self.names}

@@ -39,14 +39,14 @@ class Study:
     """A plan whose cases are handed out and whose results are handed in, in any order and in several processes' turns.
 
     Args:
-        plan: the sweep file; its inputs name what may be varied.
+        plan: the sweep file, or its entries; its inputs name what may be varied.
         folder: of the sweep, where a journal keeps each result; made if necessary.
 
     Raises:
         InputError: a file is wrong, or another process writes to the folder.
     """
 
-    def __init__(self, plan: str | Path, folder: str | Path) -> None:
+    def __init__(self, plan: str | Path | Mapping[str, Any], folder: str | Path) -> None:
         self.plan, self.folder = Plan(plan), Path(folder)
         make(self.folder)
         self._journal = Journal(self.folder / "journal.jsonl")

@@ -1,6 +1,7 @@
 """The stable interface: every example of its docstrings, and what it refuses."""
 
 import doctest
+from contextlib import closing
 
 import pytest
 
@@ -51,6 +52,31 @@ def test_what_is_no_case_and_no_law_is_refused():
         coilset.api.slice_({})
     with pytest.raises(InputError, match=r"^law: must be a Law, as Law\(update\) makes one of a function, not type$"):
         coilset.api.solve(case, law=dict)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"contacts": [1]}, "contacts: must be a function of the wire's points .*, not list"),
+        ({"contacts": lambda points, stations: None}, "contacts: gives a NoneType; it must give a list"),
+        ({"contacts": lambda points, stations: [1]}, "contacts: gives a list with 1, which is no kind of Contact"),
+        ({"steps": 3}, "steps: must be a class made from StepSizes, not 3"),
+        ({"steps": dict}, "steps: must be a class made from StepSizes"),
+    ],
+)
+def test_what_is_no_contact_and_no_class_of_steps_is_refused(given, said):
+    case = Case.read("examples/ck15_presetting.yaml", ["mesh.elements_per_turn=8"])
+    with pytest.raises(InputError, match=f"^{said}"):
+        coilset.api.solve(case, **given)
+
+
+def test_a_sweep_is_given_by_its_entries(tmp_path):
+    """Paths in them count from the working directory, as those of a Case."""
+    plan = {"case": "examples/ck15_presetting.yaml", "vary": {"spring.wire_diameter": [4.9, 5.1]}}
+    with closing(coilset.api.Study(plan, tmp_path)) as study:
+        assert [trial.inputs["spring.wire_diameter"] for trial in study.ask(2)] == [4.9, 5.1]
+    with pytest.raises(InputError, match=r"^sweep: spring\.wire_diametre: unknown entry"):
+        coilset.api.sweep(plan | {"vary": {"spring.wire_diametre": [1.0]}}, tmp_path / "other")
 
 
 def test_a_run_without_an_equilibrium_has_its_results_up_to_there():

@@ -117,6 +117,8 @@ def test_a_law_that_coilset_has_not():
         ("new_stress[0] += 1.0", "changes the stress where no strain is added"),
         ("return False", "finds no solution"),
         ("new_stress[0] = no_such_name", "numba cannot compile it"),
+        ("import math", "numba cannot compile it"),
+        ("return", "returns nothing; it must return True"),
     ],
 )
 def test_the_door_refuses(change, said):

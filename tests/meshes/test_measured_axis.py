@@ -71,8 +71,6 @@ def test_a_number_of_other_size_is_refused_before_the_axis_is_sought(factor, col
     assert capfd.readouterr().err == ""
 
 
-
-
 @pytest.mark.parametrize("name", SCANS)
 def test_rigid_motions_ovality_and_noise_leave_block_and_turns(name, tmp_path):
     change, offset, tilt = SCANS[name]

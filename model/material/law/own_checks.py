@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba.core.errors import NumbaError
+from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
 from coilset.model.base.errors import InputError
 
@@ -36,6 +36,8 @@ def check_law(update: Callable[..., bool], parameters: np.ndarray, width: int) -
         given = stress, state, strain, parameters
         if any(not np.array_equal(a, b) for a, b in zip(before, given, strict=True)):
             raise _wrong("writes into its arguments; only new_stress, new_state and tangent are written")
+        if solved is None:
+            raise _wrong("returns nothing; it must return True where it has found a solution, or False")
         if not solved:
             raise _wrong(f"finds no solution at the strain increment {strain}, from the stress {stress}")
         if not all(np.isfinite(one).all() for one in new):
@@ -45,7 +47,7 @@ def check_law(update: Callable[..., bool], parameters: np.ndarray, width: int) -
     zero, nothing = np.zeros(3), np.zeros(width)
     try:
         C = at(zero, nothing, 1e-9 * np.ones(3))[2]
-    except (NumbaError, TypeError) as error:  # the latter of another number of arguments
+    except (NumbaError, UnsupportedBytecodeError, TypeError) as error:  # the last of another number of arguments
         raise _wrong(f"numba cannot compile it: {str(error).strip().splitlines()[0]}") from None
     if not (C[0, 0] > 0.0 and C[1, 1] > 0.0):
         raise _wrong(f"is not stiff where nothing is strained: ∂σ11/∂ε11 = {C[0, 0]:g}, ∂τ12/∂γ12 = {C[1, 1]:g}")
