@@ -309,6 +309,13 @@ class Case(Strict):
     ] = "seats"
     seats: SeatsSpec = SeatsSpec()
     heads: HeadsSpec = HeadsSpec()
+    release: Annotated[
+        Literal["free", "held"],
+        Field(
+            description="what holds a spring whose load has been released: free: nothing, its ends are let go as well "
+            "for its free length, set and residual stress; held: its ends, as under load, where they are welded"
+        ),
+    ] = "free"
     mesh: MeshSpec = MeshSpec()
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()

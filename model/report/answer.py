@@ -6,7 +6,7 @@ from typing import Any
 
 from coilset.model.figures.panels.panel import with_unit
 from coilset.model.results.files.opened import Run, is_turned
-from coilset.model.results.records.labels import largest_errors, last_released, lives_text, within
+from coilset.model.results.records.labels import held_matters, largest_errors, last_released, lives_text, within
 from coilset.model.results.records.units import quantity
 
 
@@ -52,6 +52,8 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     )
     if earlier := last_released(s):
         share += f", at the last release, in step {earlier[0]} of {earlier[1]}"
+    if held_matters(s):
+        share += f"; {with_unit(s['set_held_mm'], 'mm', 3)} while its ends are held"
     inside = s["residual_shear_inside_MPa"]
     turn = s.get("residual_shear_inside_turn")
     at = "" if turn is None else f" at turn {turn:.2f}"

@@ -12,6 +12,7 @@ from mpi4py import MPI
 from coilset.model.base.agreement import max_of_ranks
 from coilset.model.base.entry import check_entries, shortened
 from coilset.model.base.errors import InputError, SolveError
+from coilset.model.base.warning import Warning
 from coilset.model.body.state import State
 from coilset.model.case import Case
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
@@ -19,6 +20,7 @@ from coilset.model.case.targets import check_own_law, check_steps, check_targets
 from coilset.model.contact.base import Contact
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.contact.curve import CentreLine, WirePoints
+from coilset.model.equilibrium.path.free_ends import FreeEnds
 from coilset.model.equilibrium.path.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.path.stability import Stability, mode_in_words
 from coilset.model.equilibrium.path.step_sizes import StepSizes
@@ -29,6 +31,7 @@ from coilset.model.material.law.law import Law
 from coilset.model.material.law.own import OwnLaw
 from coilset.model.results.files.checkpoint import Saved
 from coilset.model.results.records.record import Result, Snapshot, Step
+from coilset.model.results.records.releases import is_released
 from coilset.model.run.balance import imbalance
 from coilset.model.run.build import (
     build_continuation,
@@ -119,6 +122,7 @@ class LoadHistory:
         me = weakref.proxy(self)  # that the end of an analysis frees it at once
         self.continuation.refusal, self.continuation.cause = lambda: me._passed(), lambda: me._gives_way()
         self.continuation.steps = steps(self.continuation.control)
+        self.free_ends = FreeEnds(self.control, self.continuation, wire.turns, spring.turns)
         self.program = LoadProgram(self.control, self.continuation)
         self.setup = build_setup(case, spring, wire, kinds, coiling_diameter)
         self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.stability, detailed)
@@ -199,7 +203,7 @@ class LoadHistory:
                     step = self.recorder.record(number, settled, self.case.loading)
                     self._keep(save)
                     report(step)
-                self.recorder.add_snapshot(self.program.stage.label)
+                self._end_phase(self.program.stage.label)
                 self.program.begin(number + 1)
                 self._keep(save)
         except (SolveError, KeyboardInterrupt):
@@ -207,6 +211,21 @@ class LoadHistory:
             self.recorder.add_snapshot("last equilibrium")
             raise
         return self.result
+
+    def _end_phase(self, name: str) -> None:
+        """Record the spring at the end of a phase; one that is released is let go by its ends, too; collective."""
+        if self.case.release == "held" or not is_released(self.setup, self.result.steps):
+            self.recorder.add_snapshot(name)
+            return
+        with self.continuation.excursion():
+            try:
+                self.recorder.add_finished(name, self.free_ends.let_go())
+                return
+            except SolveError as error:
+                log.info("the ends of the spring cannot be let go: %s", error)
+        warning = Warning("held", name, "the spring finds no equilibrium when nothing holds it: its ends stay held")
+        self.recorder.add_warning(warning)
+        self.recorder.add_snapshot(name)
 
     def _settle_coils(self) -> None:
         """Let coils that are wound onto each other carry the tension of their wire, without a load on the spring.

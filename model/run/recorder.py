@@ -11,6 +11,7 @@ from coilset.model.base.agreement import max_of_ranks
 from coilset.model.base.warning import Warning
 from coilset.model.case.phases import AnyPhase, TimePhase
 from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.free_ends import Change
 from coilset.model.equilibrium.path.program import StepTaken
 from coilset.model.equilibrium.path.stability import Stability, Weakest
 from coilset.model.equilibrium.system.heads import Heads
@@ -219,6 +220,19 @@ class Recorder:
         """Record the spring in its current state; collective."""
         self.result = replace(self.result, snapshots=(*self.result.snapshots, self.snapshot(name)))
 
+    def add_finished(self, name: str, change: Change) -> None:
+        """Record the spring that nothing holds, as it is now after a change; collective."""
+        shot, held = self.snapshot(name), self.result.steps[-1]
+        tails = self.setup.spring.has_tails  # then its length is that from point to point
+        height = held.seat_height_mm + change.rise if tails else self.setup.outer_length(shot.x)
+        turn = held.turn_deg + math.degrees(change.turn)
+        shot = replace(shot, height=height, force=0.0, turn=turn, free=True)
+        self.result = replace(self.result, snapshots=(*self.result.snapshots, shot))
+
+    def add_warning(self, warning: Warning) -> None:
+        """Record what no other record shows."""
+        self.result = replace(self.result, warnings=(*self.result.warnings, warning))
+
     def snapshot(self, name: str) -> Snapshot:
         """The current state of the spring, gathered on rank 0; its force is that of the last step; collective."""
         force = self.result.steps[-1].force_N if self.result.steps else self.control.force
@@ -227,4 +241,5 @@ class Recorder:
         cells = [rod.line.in_order(values) for values in parts]
         x, components = self.layout.gather(rod.x), rod.sections.components
         triads, resultants, state, surface = cells
-        return Snapshot(name, self.control.height, force, x, triads, resultants, state, surface, components)
+        turn = math.degrees(self.control.turn)
+        return Snapshot(name, self.control.height, force, x, triads, resultants, state, surface, components, turn)

@@ -34,8 +34,13 @@ def working_states(history: LoadHistory, follow: Callable[[Step], object] = lamb
     if spec is None:
         return None
     with _excursion(history, follow) as way:
-        start = history.control.height
         free = abs(history.control.force) <= FREE * history.result.greatest_force
+        if free and history.case.release == "free":
+            try:
+                _stand_free(history)
+            except SolveError as error:
+                return Working(tuple(_not_there(target, str(error)) for _, target in spec.targets))
+        start = history.control.height
         found: dict[str, WorkingState] = {}
         for place, target in sorted(spec.targets, key=lambda one: _distance(one[1], start)):
             found[place] = _state(history, way, target, start if free else math.inf)
@@ -81,15 +86,27 @@ class _Way:
 @contextmanager
 def _excursion(history: LoadHistory, follow: Callable[[Step], object]) -> Iterator[_Way]:
     """A way after which everything is as before."""
-    continuation, state = history.continuation, history.system.state
-    before, number, pivots = state.copy(), continuation.number, continuation.negative_pivots
     try:
-        yield _Way(history, follow)
+        with history.continuation.excursion():
+            yield _Way(history, follow)
     finally:
-        state.put_back(before)
-        history.system.restore()
-        continuation.number, continuation.negative_pivots = number, pivots
         history.program.begin(history.program.number)
+
+
+def _stand_free(history: LoadHistory) -> None:
+    """Put the spring that nothing holds between its heads, whether or not it was so before; collective.
+
+    Raises:
+        SolveError: if it finds no equilibrium.
+    """
+    ends, setup = history.free_ends, history.setup
+    ends.let_go()
+    x = history.layout.gather(history.rod.x)
+    if history.case.ends == "seats":
+        lowest = float((x[:, 2] - setup.spring.seat_distance(setup.turns, "bottom")).min())
+        ends.stand(lowest, setup.outer_length(x))
+    else:
+        history.system.attach()
 
 
 def _distance(target: Target, start: float) -> tuple[bool, float]:
@@ -97,6 +114,11 @@ def _distance(target: Target, start: float) -> tuple[bool, float]:
     if target.height is not None:
         return False, abs(start - target.height)
     return True, abs(target.force or 0.0)
+
+
+def _not_there(target: Target, reason: str) -> WorkingState:
+    ((kind, value),) = target.axial.items()
+    return WorkingState("length" if kind == "height" else "force", value, f"no equilibrium was found ({reason})")
 
 
 def _state(history: LoadHistory, way: _Way, target: Target, free_height: float) -> WorkingState:

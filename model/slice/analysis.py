@@ -13,6 +13,7 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
 from coilset.model.run.stages import stage_of
+from coilset.model.results.records.releases import FREE
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.lattice import Lattice
 from coilset.model.slice.problem import Effort, SliceProblem
@@ -61,6 +62,7 @@ class SliceSnapshot:
         stress: σ11, σ22, σ33, τ12, τ13, τ23 there, in the section's axes, shape (points, 6), MPa.
         work: plastic work b* there, shape (points,), N/mm².
         line: the stress on the line η = 0, shape (points, 6), MPa.
+        turn: λ, by which the coil has turned: 1 of a coil whose ends do not.
     """
 
     name: str
@@ -70,6 +72,7 @@ class SliceSnapshot:
     stress: np.ndarray
     work: np.ndarray
     line: np.ndarray
+    turn: float
 
 
 @dataclass
@@ -172,9 +175,22 @@ class SliceAnalysis:
             except SolveError:
                 result.snapshots.append(self.snapshot("last equilibrium"))
                 raise
-            result.snapshots.append(self.snapshot(phase.label))
+            result.snapshots.append(self._end_of_phase(phase.label))
         result.complete = True
         return result
+
+    def _end_of_phase(self, name: str) -> SliceSnapshot:
+        """The section at the end of a phase; that of a released coil, which nothing holds, without a torque, too.
+
+        Raises:
+            SolveError: if no equilibrium was found.
+        """
+        greatest = max((abs(step.force_N) for step in self.result.steps), default=0.0)
+        if self.case.release == "held" or abs(self.problem.force) > FREE * greatest:
+            return self.snapshot(name)
+        with self.problem.continuation.excursion():
+            self.problem.let_go()
+            return self.snapshot(name)
 
     def _phase(self, index: int, phase: AnyPhase, report: Callable[[SliceStep], object]) -> None:
         problem, stage = self.problem, stage_of(self.case.loading, index, self.spring)
@@ -261,6 +277,7 @@ class SliceAnalysis:
             self.points.section_stress(),
             self.points.state[:, 12].copy(),
             self.line.section_stress(),
+            self.body.turn,
         )
 
 

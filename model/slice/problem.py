@@ -123,6 +123,19 @@ class SliceProblem:
         """Of the contact at the last equilibrium."""
         return self.body.pressure
 
+    def let_go(self) -> None:
+        """Go to the coil without force and torque, whether or not its ends may turn; within an excursion.
+
+        Raises:
+            SolveError: if there is no equilibrium.
+        """
+        turns, free = self.body.turns, self.free_ends
+        self.body.turns = self.free_ends = True
+        try:
+            self.go_to_force(0.0)
+        finally:
+            self.body.turns, self.free_ends = turns, free
+
     # ---- steps -----------------------------------------------------------------------------------------------------
 
     def run(self, stage: Stage) -> Iterator[StepTaken]:

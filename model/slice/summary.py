@@ -21,7 +21,7 @@ def summarise(analysis: SliceAnalysis) -> dict:
     greatest = max(forces, default=0.0, key=abs)
     released = bool(result.steps) and abs(last.force) <= 1e-6 * abs(greatest)
     loaded = max(result.snapshots, key=lambda shot: abs(shot.force))
-    before, after = spring.free_length, analysis.height if released else None
+    before, after = spring.free_length, last.height if released else None
     return {
         "complete": result.complete,
         "free_length_before_mm": before,
@@ -45,7 +45,7 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "unknowns": analysis.body.u.size + 2,
         "turns": analysis.turns,
         "free_to_turn": analysis.problem.free_ends,
-        "turn_after": analysis.body.turn,
+        "turn_after": last.turn,
         "inside_factor": result.inside_factor,
         "plastic_work_max_N_per_mm2": max(float(shot.work.max()) for shot in result.snapshots),
         "plastic_work_known_to_N_per_mm2": analysis.law.data.validity.plastic_work,

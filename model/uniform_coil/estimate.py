@@ -15,6 +15,7 @@ from coilset.model.case.phases import Phase
 from coilset.model.case.targets import check_targets, check_working
 from coilset.model.case.working import WorkingSpec
 from coilset.model.material.law.law import Law
+from coilset.model.results.records.releases import FREE
 from coilset.model.section.rules import polar, upper_half
 from coilset.model.uniform_coil.equivalent import coil
 from coilset.model.uniform_coil.rod import UniformState, press
@@ -71,7 +72,10 @@ def estimate(case: Case, spring: Spring, law: Law) -> Estimate:
         torque = max(torque, abs(float(state.sections[0, TORSION])))
         found[f"force {number}"] = force
     found["force_max_N"] = greatest
-    if force == 0.0 or abs(force) < 1e-6 * abs(greatest):
+    if force == 0.0 or abs(force) < FREE * abs(greatest):
+        if case.release == "free":
+            _, state = press(state, law, None, np.zeros(1), RULE, True, temperature)
+            travel = float(state.travel[0])
         found |= {"free_length_after_mm": length - travel, "set_mm": travel}
     if case.working is not None:
         found |= _working(case.working, state, law, free, temperature, length)

@@ -15,7 +15,7 @@ from rich.table import Table
 
 from coilset.model.case.phases import drives_at
 from coilset.model.contact.base import SEAT_DOFS
-from coilset.model.results.records.labels import largest_errors, last_released, lives_text, lost, within
+from coilset.model.results.records.labels import held_matters, largest_errors, last_released, lives_text, lost, within
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.results.records.units import quantity as name_and_unit
 from coilset.model.run.analysis import Analysis
@@ -320,6 +320,9 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield last, within(summary["free_length_after_mm"], of_set, "mm", 4)
     at = f", release in step {earlier[0]} of {earlier[1]}" if earlier else ""
     yield f"[bold]set{at}[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]"
+    if held_matters(summary):
+        moment = quantity(summary["end_moment_held_Nmm"], "N mm", 0)
+        yield "  before its ends are let go", f"{quantity(summary['set_held_mm'], 'mm', 4)}, held with {moment}"
     yield "initial rate", within(summary["rate_N_per_mm"], summary["estimated_rate_error_N_per_mm"], "N/mm", 4)
     if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
         finished = summary["rate_30_70_after_N_per_mm"]

@@ -7,6 +7,7 @@ of a load program are committed here, the states of a snap-through in `branch_sw
 import logging
 import math
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from typing import TypeVar
@@ -154,6 +155,18 @@ class Continuation:
             self.guess.probed = self.system.increments.copy(), load
         self.system.restore()
         return outcome, reading
+
+    @contextmanager
+    def excursion(self) -> Iterator[None]:
+        """What happens within leaves the equilibrium before as it was; its path is to be begun anew; collective."""
+        before, number, pivots = self.system.state.copy(), self.number, self.negative_pivots
+        try:
+            yield
+        finally:
+            self.system.state.put_back(before)
+            self.system.attach()
+            self.system.restore()
+            self.number, self.negative_pivots = number, pivots
 
     def _solve(self, load: Load, starts: Iterable[Start]) -> Outcome:
         outcome = None

@@ -25,12 +25,14 @@ class ContactParts:
     Attributes:
         halo: Halo.
         need_rotations: whether some kind needs the rotations of the nodes.
+        detached: whether only coils touch each other, and no seat, guide or head.
     """
 
     def __init__(self, layout: LineLayout, contacts: Sequence[Contact]) -> None:
         self.layout, self.comm, self.contacts = layout, layout.comm, contacts
         self.halo = Halo(layout, contacts)
         self.need_rotations = any(contact.needs_rotations for contact in contacts)
+        self.detached = False
         self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact.limits_step]
         self._limiting = [contacts[number] for number in self._limiting_numbers]
         self._augmented = [contact for contact in contacts if contact.multiplier_offset is not None]
@@ -51,6 +53,8 @@ class ContactParts:
         """
         trial = self.halo.trial(x, seats, rotations)
         parts = [contact.evaluate(trial) for contact in self.contacts]
+        if self.detached:
+            parts = [part if self._acts(contact) else part.only(np.arange(0)) for contact, part in zip(self.contacts, parts, strict=True)]
         deepest = max([parts[number].deepest for number in self._limiting_numbers], default=0.0)
         if self.comm.size == 1:
             return parts, deepest, sum([part.closed for part in parts])
@@ -60,10 +64,14 @@ class ContactParts:
         self.comm.Allgather(np.array([deepest, closed]), found)
         return parts, float(found[:, 0].max()), int(found[:, 1].sum())
 
+    def _acts(self, contact: Contact) -> bool:
+        return contact.end is None or not self.detached
+
     def max_penetration(self, x: np.ndarray, seats: np.ndarray) -> float:
         """Maximum penetration of coils and seats, mm, cheaper than `evaluate`; collective."""
         trial = self.halo.trial(x, seats)
-        deepest = max(contact.max_penetration(trial) for contact in self._limiting)
+        limiting = [contact.max_penetration(trial) for contact in self._limiting if self._acts(contact)]
+        deepest = max(limiting, default=0.0)
         return max_of_ranks(self.comm, deepest)
 
     def gathered(self, parts: list[Contribution]) -> list[Contribution]:
@@ -89,7 +97,7 @@ class ContactParts:
     def augment(self, x: np.ndarray, seats: np.ndarray) -> None:
         """Augment the contacts that have penetrated; collective."""
         trial = self.halo.trial(x, seats)
-        for contact in self._augmented:
+        for contact in filter(self._acts, self._augmented):
             contact.augment(trial)
             if contact.memory is not None:
                 self.share(contact.memory, [AUGMENTED])

@@ -139,6 +139,51 @@ class Heads:
         kept = {one: force for one, force in forces if one != AXIAL and int(self.dofs[one]) not in self.held}
         return self.load({AXIAL: self.freedom_at(self.height - travel)}, kept)
 
+    # ---- the spring that nothing holds: its bottom tip stays, which then carries no force -------------------------
+
+    def tip_forces(self) -> dict[int, float]:
+        """What the heads do to the wire at the last equilibrium, by its unknowns, but at the bottom tip; collective."""
+        stay = {*self._bottom_tip(), *map(int, self.layout.seat_dofs)}
+        dofs = [dof for dof in {*self.held, *map(int, self.dofs)} if dof not in stay]
+        return dict(zip(dofs, self.layout.values(self.system.internal, np.array(dofs, dtype=int)).tolist(), strict=True))
+
+    @property
+    def held_stations(self) -> list[int]:
+        """Stations by which bottom and top are held."""
+        return [station for station, _ in self.tips.values()]
+
+    def tip_triads(self) -> tuple[np.ndarray, np.ndarray]:
+        """Triads of bottom and top tip at the last equilibrium, shape (3, 3) each; collective."""
+        R = self.system.state["R"].equilibrium
+        bottom, top = (self.layout.at_station(R, station) for station in self.held_stations)
+        return bottom, top
+
+    def let_go(self, forces: Mapping[int, float], share: float) -> Load:
+        """The load under which only a share of `tip_forces` is left."""
+        fixed = dict.fromkeys([*self._bottom_tip(), *map(int, self.layout.seat_dofs)], 0.0)
+        return Load.of(self.layout, fixed, {dof: share * force for dof, force in forces.items()})
+
+    def carry(self, R: np.ndarray, lift: float, seat: float) -> Load:
+        """The load that turns a free spring about its bottom tip and lifts it as a rigid body; collective.
+
+        Args:
+            R: rotation, shape (3, 3).
+            lift: along the axis, mm; seat: that of the top seat, mm.
+        """
+        rod, station, ψ = self.layout.rod, self.tips["bottom"][0], np.empty(3)
+        logarithm(np.ascontiguousarray(R), ψ)
+        motion = np.array([0.0, 0.0, lift])
+        if station in rod.arms:  # its unknowns are those of the head's point
+            triad = self.layout.at_station(self.system.state["R"].equilibrium, station)
+            motion -= (R - np.eye(3)) @ triad @ rod.arms[station]
+        fixed = dict.fromkeys(map(int, self.layout.seat_dofs), 0.0)
+        fixed[int(self.layout.seat_dofs[AXIAL])] = seat
+        fixed |= dict(zip(self._bottom_tip(), [*motion, *ψ], strict=True))
+        return Load.of(self.layout, fixed, {})
+
+    def _bottom_tip(self) -> list[int]:
+        return [int(dof) for dof in self.layout.station_dofs[self.tips["bottom"][0]]]
+
     def freedom_at(self, height: float) -> float:
         """Value of the axial freedom at a height, mm."""
         return self._level("equilibrium") + (height - self.height)

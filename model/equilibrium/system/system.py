@@ -222,6 +222,18 @@ class System:
         """Is any contact closed at the last evaluation, on any rank?"""
         return self.last.closed > 0
 
+    def detach(self) -> None:
+        """Take away whatever touches the wire from outside, until `attach`: coils alone still touch each other."""
+        if self.contacts:
+            self.touching.detached = True
+        self.expire()
+
+    def attach(self) -> None:
+        """The reverse of `detach`."""
+        if self.contacts:
+            self.touching.detached = False
+        self.expire()
+
     def gathered_contacts(self) -> list[Contribution]:
         """Contributions of all ranks at the last evaluation, without stiffness, for output; collective."""
         return self.touching.gathered(self.last.contributions) if self.contacts else []

@@ -28,7 +28,7 @@ from coilset.model.results.records.provenance import changed, provenance
 from coilset.model.results.records.record import BucklingMode, Result, Snapshot
 
 # what must be unchanged to resume
-SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "heads", "mesh", "contact", "heat")
+SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "heads", "release", "mesh", "contact", "heat")
 ANEW = "use --overwrite instead of --resume to start again"
 
 
@@ -142,7 +142,7 @@ class Checkpoint:
 
     def _snapshot(self, number: int) -> Snapshot:
         found: dict[str, Any] = state_file.read_arrays(self.folder / f"snapshot-{number:02d}.npz")
-        for name, kind in (("name", str), ("height", float), ("force", float)):
+        for name, kind in (("name", str), ("height", float), ("force", float), ("turn", float), ("free", bool)):
             found[name] = kind(found[name])
         found["components"] = tuple(str(name) for name in found["components"])
         return Snapshot(**found)

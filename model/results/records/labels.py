@@ -60,6 +60,17 @@ CAUSES = {
 """Causes of these errors, in words."""
 
 
+HELD = 1e-3  # of the set: a smaller change of it, as the ends are let go, is not worth a row
+
+
+def held_matters(summary: Mapping[str, Any]) -> bool:
+    """Whether the set of a spring is another one once its ends are let go, beyond its error; of summary.json."""
+    set_mm, held = summary.get("set_mm"), summary.get("set_held_mm")
+    if set_mm is None or held is None:
+        return False
+    return bool(abs(held - set_mm) > max(HELD * abs(set_mm), summary.get("estimated_set_error_mm") or 0.0))
+
+
 def last_released(summary: Mapping[str, Any]) -> tuple[int, int] | None:
     """Step of the last release and number of all steps, where the run does not end with it; of summary.json.
 

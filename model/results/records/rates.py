@@ -80,7 +80,7 @@ def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, An
     curve = first_compression(result.steps)
     block, after = setup.spring.block_height, None
     if release is not None:
-        height = release.snapshot.height
+        height = release.step.seat_height_mm  # of its path, on which the ends are held
         after = makers_rate(finished(result.steps, release.phase, height, height - block), height - block)
     return {
         "rate_30_70_N_per_mm": makers_rate(curve, setup.spring.free_length - block),
@@ -112,7 +112,7 @@ def turning(setup: Setup, result: Result, release: Release | None) -> dict[str, 
         max((step.torque_Nmm for step in steps), key=abs),
         first.torque_Nmm / first.turn_deg,
         after,
-        release.step.turn_deg if release else None,
+        release.snapshot.turn if release else None,
     )
     return dict(zip(names, values, strict=True))
 

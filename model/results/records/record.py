@@ -117,6 +117,9 @@ class Snapshot:
         point_state: at the section points, shape (n, sections, points, n_state), MPa.
         surface_state: at the points on the wire's surface, shape (n, sections, surface points, n_state), MPa.
         components: names of the columns of both.
+        turn: rotation of the top head or, if nothing holds the spring, of its top tip about the axis, less that of the
+            bottom one, degrees.
+        free: whether nothing holds the spring, see coilset.model.equilibrium.path.free_ends.
     """
 
     name: str
@@ -128,6 +131,8 @@ class Snapshot:
     point_state: np.ndarray
     surface_state: np.ndarray
     components: tuple[str, ...]
+    turn: float = 0.0
+    free: bool = False
 
     @property
     def shear(self) -> np.ndarray:

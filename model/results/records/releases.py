@@ -60,6 +60,12 @@ def load_of(setup: Setup, steps: Sequence[Step]) -> Callable[[Step], float]:
     return lambda step: abs(step.force_N)
 
 
+def is_released(setup: Setup, steps: Sequence[Step], load: Callable[[Step], float] | None = None) -> bool:
+    """Whether the last of these steps leaves a spring free of load; by `load_of` all steps of the run, or these."""
+    load = load or load_of(setup, steps)
+    return bool(steps) and not steps[-1].lift_off_mm and load(steps[-1]) <= FREE * max(map(load, steps))
+
+
 def _released(setup: Setup, result: Result) -> Iterator[Release]:
     load = load_of(setup, result.steps)
     number_of_phases = len(result.snapshots) - 1
@@ -67,7 +73,7 @@ def _released(setup: Setup, result: Result) -> Iterator[Release]:
         steps = [step for step in result.steps if step.phase <= phase]
         maximum = max(map(load, steps), default=0.0)
         ends = phase == number_of_phases - 1
-        if not steps or steps[-1].lift_off_mm or load(steps[-1]) > FREE * maximum or not (maximum or ends):
+        if not is_released(setup, steps, load) or not (maximum or ends):
             continue
         length = snapshot.height if setup.spring.has_tails else setup.outer_length(snapshot.x)
         yield Release(phase, snapshot, steps[-1], length, setup.spring.free_length - length)

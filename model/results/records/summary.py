@@ -2,7 +2,7 @@
 
 from dataclasses import asdict
 from itertools import pairwise
-from math import isfinite
+from math import hypot, isfinite
 from typing import Any
 
 import numpy as np
@@ -57,6 +57,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         free_length_before_mm=setup.spring.free_length,
         free_length_after_mm=release.free_length if release else None,
         set_mm=release.set if release else None,
+        **held(setup, result, release),
         releases=tuple(_release(one) for one in freed),
         rate_N_per_mm=result.rate if isfinite(result.rate) else None,
         **rates(setup, result, release),
@@ -107,6 +108,18 @@ def summary(setup: Setup, result: Result) -> Summary:
         lift_off_max_mm=max((step.lift_off_mm for step in result.steps), default=0.0),
         warnings=tuple(run_warnings(setup, result)),
     )
+
+
+def held(setup: Setup, result: Result, release: Release | None) -> dict[str, float | None]:
+    """What the ends of a released spring held before they were let go; None of one that they hold, or without ends."""
+    if release is None or not release.snapshot.free:
+        return {"set_held_mm": None, "end_moment_held_Nmm": None}
+    ends = [end for one in result.seats if one.step == release.step.number for end in (one.bottom, one.top)]
+    moments = [abs(value) for end in ends for value in (hypot(end.moment_x_Nmm, end.moment_y_Nmm), end.moment_z_Nmm)]
+    return {
+        "set_held_mm": setup.spring.free_length - release.step.seat_height_mm,
+        "end_moment_held_Nmm": max(moments, default=None),
+    }
 
 
 def load_losses(result: Result) -> tuple[dict[str, Any], ...]:

@@ -30,6 +30,12 @@ class Summary:
         "mm", "outer length after the last release to zero force; `null` if there was none", in_slice=True
     )
     set_mm: float | None = entry("mm", "their difference", in_slice=True)
+    set_held_mm: float | None = entry(
+        "mm", "the set while the ends still held the spring; `null` if they are not let go, or there is no set"
+    )
+    end_moment_held_Nmm: float | None = entry(
+        "N mm", "the greater of the moments with which they held it, across the axis or about it; `null` likewise"
+    )
     releases: tuple[dict[str, Any], ...] = entry(
         "", "after each release to zero force: its `phase` (from 1 on) and `step`, `free_length_mm` and `set_mm`"
     )
