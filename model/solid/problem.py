@@ -9,6 +9,7 @@ from dolfinx import fem, la
 from petsc4py import PETSc
 
 from coilset.meshes.solid import SolidMesh
+from coilset.model.base.errors import SolveError
 from coilset.model.body.body import Moment
 from coilset.model.equilibrium.newton.iteration import Iteration
 from coilset.model.equilibrium.newton.methods import MULTIGRID, SYMMETRIC, solid_method
@@ -112,12 +113,28 @@ class SolidProblem:
     def _between(self, origin: tuple[Motion, Motion], targets: tuple[Motion, Motion], part: float) -> list[Motion]:
         return [a.between(b, min(part, 1.0)) for a, b in zip(origin, targets, strict=True)]
 
+    def let_go(self) -> None:
+        """Go to the wire whose top end nothing holds, its bottom end as it is, so without a force; within an excursion.
+
+        Raises:
+            SolveError: if there is no equilibrium.
+        """
+        bottom, top = (self._unknowns(head.blocks) for head in (self.bottom, self.top))
+        load = Load(self.system.layout, bottom, np.zeros(len(bottom)), top, np.zeros(len(top)))
+        outcome = self.continuation.attempt(load)
+        if not outcome.converged:
+            raise SolveError(f"the solid finds no equilibrium when nothing holds its top end: {outcome.reason}")
+
+    def _unknowns(self, blocks: np.ndarray) -> np.ndarray:
+        """This rank's places of the unknowns of blocks."""
+        return np.asarray((3 * blocks[blocks < self.solid.configuration.owned, None] + np.arange(3)).ravel())
+
     def load(self, bottom: Motion, top: Motion) -> Load:
         """The load that takes the heads from the last equilibrium to the prescribed motions."""
         increment = np.zeros_like(self.solid.u)
         for head, motion in ((self.bottom, bottom), (self.top, top)):
             increment[head.blocks] = head.positions(motion) - self.solid.state["x"].equilibrium[head.blocks]
-        places = (3 * self._held[:, None] + np.arange(3)).ravel()
+        places = self._unknowns(self._held)
         none = np.empty(0)
         return Load(self.system.layout, places, increment[self._held].ravel(), none.astype(np.int64), none)
 

@@ -13,6 +13,7 @@ from coilset.meshes.solid import SectionGrid, coil_section
 from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case, check
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
+from coilset.model.equilibrium.path.free_ends import END_COIL, mean_rotation, nearest_rotation
 from coilset.model.results.records.record import Snapshot, Step
 from coilset.model.run.analysis import Analysis
 from coilset.model.slice.analysis import same_in_all_turns
@@ -56,6 +57,7 @@ class Moment:
 
     Attributes:
         name: of it; force: of the solid, N.
+        height: of the solid, over the axis, mm; free: whether nothing holds it and the rod.
         shear: τ13 of the solid along the diameter of its middle section, from the inside of the coil, shape
             (DIAMETER,), MPa; positive as in a compressed spring.
         rod_inside: the rod's at the inside, MPa.
@@ -64,6 +66,8 @@ class Moment:
 
     name: str
     force: float
+    height: float
+    free: bool
     shear: np.ndarray
     rod_inside: float
     body: pyvista.UnstructuredGrid | None
@@ -141,7 +145,7 @@ class TurnAnalysis:
         self.program = AxialProgram(self.problem)
         y = 0.5 * d * np.linspace(-1.0, 1.0, DIAMETER)
         self.diameter, self._sample = y, SectionSample(self.problem.solid, 0.5 * wire.length, y, np.zeros_like(y))
-        self.result = TurnResult()
+        self.result, self._start = TurnResult(), self._positions()
 
     def _as_rod(self) -> Case:
         """The case of the rod: the same turns between clamped ends."""
@@ -152,7 +156,7 @@ class TurnAnalysis:
             "turns": self.turns,
             "pitch": self.pitch,
         }
-        kept = {name: data[name] for name in ("material", "temperature", "mesh", "accuracy", "solver")}
+        kept = {name: data[name] for name in ("material", "temperature", "mesh", "accuracy", "solver", "release")}
         loading = [self._phase(index, phase) for index, phase in enumerate(self.case.loading)]
         return check({**kept, "spring": spring, "ends": "clamped", "loading": loading})
 
@@ -213,7 +217,7 @@ class TurnAnalysis:
                 if step is steps[-1] and isinstance(phase, Phase):
                     self._reach(phase)
                 self._record(step, began, (held, rod_held) if isinstance(phase, TimePhase) else None, report)
-            self.result.moments.append(self._moment(phase.label, result.snapshots[index + 1]))
+            self.result.moments.append(self._end_of_phase(phase.label, result.snapshots[index + 1]))
         self.result.complete = True
         return self.result
 
@@ -248,9 +252,35 @@ class TurnAnalysis:
         self.result.steps.append(record)
         report(record)
 
-    def _moment(self, name: str, shot: Snapshot) -> Moment:
+    def _end_of_phase(self, name: str, shot: Snapshot) -> Moment:
+        """Solid and rod at the end of a phase; the solid is let go of where the rod is."""
+        if not shot.free:
+            return self._moment(name, shot, self._positions())
+        before = self._positions()
+        with self.problem.continuation.excursion():
+            self.problem.let_go()
+            after = self._positions()
+            rotations = [nearest_rotation(after[end], before[end]) for end in self._end_coils()]
+            return self._moment(name, shot, after @ mean_rotation(rotations).T)
+
+    def _positions(self) -> np.ndarray:
+        """Of all nodes of the solid at the last equilibrium, on every rank, shape (nodes, 3), mm; collective."""
+        solid = self.problem.solid
+        x = solid.state["x"].equilibrium.reshape(-1, 3)[: solid.configuration.owned]
+        return np.concatenate(solid.comm.allgather(x))
+
+    def _end_coils(self) -> tuple[np.ndarray, np.ndarray]:
+        """Which nodes are on the bottom and on the top end coil, shape (nodes,) each."""
+        x, y, z = self._start.T
+        angle = np.arctan2(y, x) / (2.0 * np.pi)
+        turn = angle + np.round(z / self.pitch - angle)
+        return turn <= END_COIL, turn >= self.turns - END_COIL
+
+    def _moment(self, name: str, shot: Snapshot, x: np.ndarray) -> Moment:
         inside = self.rod.setup.inside.shear(shot.surface_state, shot.components).mean(axis=1)
         middle = len(inside) // 2
         rod = float(np.mean(inside[middle - 1 + len(inside) % 2 : middle + 1]))  # one element, or the two in the middle
         force = float(self.program.stations[-1].force)
-        return Moment(name, force, self._sample.stress()[:, 2], rod, output.grid(self.problem.solid))
+        height = float(np.ptp(x[:, 2]) - np.ptp(self._start[:, 2])) + self.part * self.spring.free_length
+        stress = self._sample.stress()[:, 2]
+        return Moment(name, force, height, shot.free, stress, rod, output.grid(self.problem.solid))

@@ -11,6 +11,7 @@ from coilset.model.figures import display
 from coilset.model.figures.png import save
 from coilset.model.results.files.folder import make
 from coilset.model.results.files.grid_file import write_grid
+from coilset.model.results.records.releases import last_release
 from coilset.model.solid.output import picture
 from coilset.model.turn.analysis import TurnAnalysis
 
@@ -26,7 +27,10 @@ def summarise(analysis: TurnAnalysis) -> dict[str, Any]:
     forces, rod_forces = ([getattr(step, name) for step in result.steps] for name in ("force_N", "rod_force_N"))
     greatest = max(forces, default=0.0, key=abs)
     released = bool(moments) and abs(moments[-1].force) <= 1e-4 * abs(greatest)
-    rod_travel = analysis.rod.result.steps[-1].travel_mm / analysis.part
+    of_rod, travel = last_release(analysis.rod.setup, analysis.rod.result), analysis.travel
+    rod_travel = of_rod.set / analysis.part if of_rod else 0.0
+    if moments and moments[-1].free:
+        travel = analysis.spring.free_length - moments[-1].height / analysis.part
     losses = [(step.load_loss_percent, step.rod_load_loss_percent) for step in result.steps]
     loss, rod_loss = next((one for one in reversed(losses) if one[0] is not None), (None, None))
 
@@ -45,7 +49,7 @@ def summarise(analysis: TurnAnalysis) -> dict[str, Any]:
     return {
         "complete": result.complete,
         "free_length_before_mm": analysis.spring.free_length,
-        **numbers(analysis.travel, result.rate, greatest, shears, loss),
+        **numbers(travel, result.rate, greatest, shears, loss),
         "rod": numbers(rod_travel, rod_rate, max(rod_forces, default=0.0, key=abs), rod_shears, rod_loss),
         "material": analysis.law.name,
         "turns": analysis.spring.turns,

@@ -46,7 +46,11 @@ EXTENSION = {
     "ends": "clamped",
     "mesh": {"elements_per_turn": 12, "section": {"radial": 3, "angular": 8}},
     "accuracy": "none",
-    "loading": [{"to": {"force": -20}, "steps": 2}, {"to": {"travel": -25}, "steps": 10}, {"to": {"force": 0}, "steps": 5}],
+    "loading": [
+        {"to": {"force": -20}, "steps": 2},
+        {"to": {"travel": -25}, "steps": 10},
+        {"to": {"force": 0}, "steps": 5},
+    ],
 }
 
 

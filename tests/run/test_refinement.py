@@ -71,7 +71,7 @@ def test_entries_of_the_case_are_kept(example):
 
 
 def test_a_finer_run_is_within_the_accuracy_and_can_be_continued(example, tmp_path, monkeypatch):
-    """Ended in the finer run, after which the results are those of the first; continued, to the same bits."""
+    """Ended in the last finer run, after which the results are those of the one before; continued, to the same bits."""
     counts = []
 
     def solved(name, last=10_000, resume=False):
@@ -94,7 +94,7 @@ def test_a_finer_run_is_within_the_accuracy_and_can_be_continued(example, tmp_pa
     assert not [one for one in whole["warnings"] if one["name"] == "error"]
     with pytest.raises(KeyboardInterrupt):
         solved("ended", counts[0] - 5)
-    assert summary("ended")["origin"]["mesh"]["elements_per_turn"] == 16
+    assert summary("ended")["origin"]["mesh"]["elements_per_turn"] < mesh["elements_per_turn"]
     assert solved("ended", resume=True) == whole
     assert counts[1] < 10  # steps that were left
 

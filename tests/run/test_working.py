@@ -35,8 +35,9 @@ def test_they_change_nothing_of_the_run(example, there):
         np.testing.assert_array_equal(field.equilibrium, there.system.state[name].equilibrium, name)
 
 
-def test_a_load_program_that_goes_there_finds_the_same(example, there):
-    """By its own phases, two steps each; then the stresses from its snapshots."""
+def test_a_load_program_that_goes_there_finds_the_same(example):
+    """By its own phases, two steps each, between ends that are not let go; then the stresses from its snapshots."""
+    there = run(example, PRESSED, "working={lengths: [24, 26], forces: [60]}", "release=held")
     found = summarise(there.setup, there.result)
     other = run(example, PRESSED + ", {to: {height: 26}, steps: 2}, {to: {height: 24}, steps: 2}")
     for height, snapshot in ((26, 3), (24, 4)):

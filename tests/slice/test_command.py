@@ -26,7 +26,9 @@ def test_files_and_summary(example, tmp_path):
     summary = json.loads((tmp_path / "here" / "summary.json").read_text())
     rows = list(csv.DictReader((tmp_path / "here" / "history.csv").read_text().splitlines()))
     assert [float(row["travel_mm"]) for row in rows[:3]] == pytest.approx([2, 4, 6], abs=1e-9)
-    assert summary["set_mm"] == pytest.approx(float(rows[-1]["travel_mm"]), rel=1e-12)
+    held = float(rows[-1]["travel_mm"])  # with the torque of ends that do not turn, which then goes
+    assert 1e-6 < abs(summary["set_mm"] / held - 1.0) < 1e-2
+    assert summary["turn_after"] != 1.0
     assert summary["force_max_N"] == pytest.approx(max(float(row["force_N"]) for row in rows), rel=1e-12)
     assert summary["complete"]
     assert summary["released"]["surface_shear_max_MPa"] == summary["residual_shear_max_MPa"]

@@ -28,7 +28,8 @@ def test_a_turn_presses_creeps_and_is_released_like_the_rod(tmp_path):
     assert [float(row["travel_mm"]) for row in rows[1:3]] == pytest.approx([14.0] * 2)
     assert float(rows[2]["hours"]) == pytest.approx(10.0)
     assert abs(float(rows[-1]["force_N"])) < 1e-4 * summary["force_max_N"]
-    assert summary["set_mm"] == pytest.approx(float(rows[-1]["travel_mm"]))
+    held = float(rows[-1]["travel_mm"])  # at which the ends are let go: one turn springs back by a part of its set
+    assert 0.005 < abs(summary["set_mm"] - held) / held < 0.1
     assert summary["load_loss_percent"] > 0.5
     for name, tolerance in (
         ("rate_N_per_mm", 0.02),

@@ -5,8 +5,9 @@ that has set keeps bending and turning moments in its wire. Beside the path of t
 well: seats, guides and heads are taken away, and the forces and moments of held tips are reduced to zero. The bottom
 tip alone stays where it is; it holds the spring without a force, as nothing else acts on it from outside.
 
-Plates that measure a spring rest on its end coils. Held by its bottom tip alone it leans, so it is turned as a rigid body
-until its end coils lie on average as they lay between the heads: its length is that across planes parallel to these.
+Plates that measure a spring rest on its end coils. Held by its bottom tip alone it leans, so it is turned as a rigid
+body until its end coils lie on average as they lay between the heads: its length is that across planes parallel to
+these.
 """
 
 import logging
@@ -23,6 +24,7 @@ from coilset.model.rotations.vectors import nearest_vector
 
 log = logging.getLogger("coilset.steps")
 STEPS = 2  # equal ones in which the ends are let go
+POINTS = 25  # of an end coil that show how it lies
 END_COIL = 0.75  # turn of wire at an end on which a plate rests: as much as is usually ground
 
 
@@ -49,8 +51,8 @@ class FreeEnds:
 
     def __init__(self, control: Heads, continuation: Continuation, turns: np.ndarray, coils: float) -> None:
         self.control, self.continuation, self.system = control, continuation, control.system
-        part = min(END_COIL, coils) + 1e-9
-        self._ends = (turns >= -1e-9) & (turns <= part), (turns >= coils - part) & (turns <= coils + 1e-9)
+        self._turns, part = turns, np.linspace(0.0, min(END_COIL, coils), POINTS)
+        self._ends = part, coils - part
 
     def let_go(self) -> Change:
         """Go to the spring that nothing holds, in its place; its contacts with others stay off; collective.
@@ -60,6 +62,7 @@ class FreeEnds:
         """
         control = self.control
         before, triads, forces = self._positions(), control.tip_triads(), control.tip_forces()
+        rested = [self._end_coil(before, end) for end in self._ends]
         self.system.detach()
         continuation = self.continuation
         continuation.begin()
@@ -67,7 +70,8 @@ class FreeEnds:
         while continuation.steps.position.done < STEPS:
             continuation.advance(path)
         after = self._positions()
-        self._move(mean_rotation([nearest_rotation(after[end], before[end]) for end in self._ends]))
+        rests = [self._end_coil(after, end) for end in self._ends]
+        self._move(mean_rotation([nearest_rotation(now, then) for now, then in zip(rests, rested, strict=True)]))
         bottom, top = (
             nearest_vector(now @ then.T, np.zeros(3))[2] for now, then in zip(control.tip_triads(), triads, strict=True)
         )
@@ -95,6 +99,10 @@ class FreeEnds:
     def _positions(self) -> np.ndarray:
         """Positions of all stations at the last equilibrium, shape (n, 3), mm; collective."""
         return self.control.layout.gather(self.system.state["x"].equilibrium)
+
+    def _end_coil(self, x: np.ndarray, turns: np.ndarray) -> np.ndarray:
+        """Points of an end coil, the same on any mesh, stations at `x`, shape (POINTS, 3), mm."""
+        return np.stack([np.interp(turns, self._turns, component) for component in x.T], axis=1)
 
 
 def nearest_rotation(x: np.ndarray, to: np.ndarray) -> np.ndarray:

@@ -54,7 +54,8 @@ class ContactParts:
         trial = self.halo.trial(x, seats, rotations)
         parts = [contact.evaluate(trial) for contact in self.contacts]
         if self.detached:
-            parts = [part if self._acts(contact) else part.only(np.arange(0)) for contact, part in zip(self.contacts, parts, strict=True)]
+            pairs = zip(self.contacts, parts, strict=True)
+            parts = [part if self._acts(contact) else part.only(np.arange(0)) for contact, part in pairs]
         deepest = max([parts[number].deepest for number in self._limiting_numbers], default=0.0)
         if self.comm.size == 1:
             return parts, deepest, sum([part.closed for part in parts])

@@ -145,7 +145,9 @@ class Heads:
         """What the heads do to the wire at the last equilibrium, by its unknowns, but at the bottom tip; collective."""
         stay = {*self._bottom_tip(), *map(int, self.layout.seat_dofs)}
         dofs = [dof for dof in {*self.held, *map(int, self.dofs)} if dof not in stay]
-        return dict(zip(dofs, self.layout.values(self.system.internal, np.array(dofs, dtype=int)).tolist(), strict=True))
+        return dict(
+            zip(dofs, self.layout.values(self.system.internal, np.array(dofs, dtype=int)).tolist(), strict=True)
+        )
 
     @property
     def held_stations(self) -> list[int]:

@@ -110,7 +110,7 @@ def summary(setup: Setup, result: Result) -> Summary:
     )
 
 
-def held(setup: Setup, result: Result, release: Release | None) -> dict[str, float | None]:
+def held(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
     """What the ends of a released spring held before they were let go; None of one that they hold, or without ends."""
     if release is None or not release.snapshot.free:
         return {"set_held_mm": None, "end_moment_held_Nmm": None}
