@@ -65,7 +65,7 @@ def spring(number: int, fine: bool = False) -> dict[str, Any]:
             block = geometry.free_length - geometry.block_height
             loading += [{"to": {"travel": part * (block if to == "block" else to["travel"])}} for part in PARTS]
         loading.append(phase)
-    data["loading"] = loading
+    data["loading"], data["release"] = loading, "held"  # as the references, which were made between the ends
     if fine:
         data["accuracy"] = FINE_ACCURACY
         data["contact"] = data.get("contact", {}) | {"bedding": FINE_BEDDING * case_law(case, geometry).E}

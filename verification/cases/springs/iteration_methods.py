@@ -67,7 +67,7 @@ class Run:
 
 def example(ends: str, method: str, down: int = 1, up: int = 1) -> Case:
     """The example's Case with other ends, method and steps."""
-    settings = [f"ends={ends}", f"solver.method={method}", f"solver.tolerance={TOLERANCE}"]
+    settings = [f"ends={ends}", "release=held", f"solver.method={method}", f"solver.tolerance={TOLERANCE}"]
     return read_case(EXAMPLE, [*settings, f"loading.0.steps={down}", f"loading.1.steps={up}"])
 
 
