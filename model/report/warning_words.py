@@ -19,6 +19,7 @@ KINDS = {
     "error": "the estimated error exceeds the accuracy required",
     "ground tip": "the tip of a ground end has an unusual thickness",
     "hands": "both springs are wound in the same direction",
+    "held": "the ends of a released spring could not be let go",
     "index": "the spring index D/d is outside the usual range",
     "initial rate": "the initial rate could not be computed",
     "initial tension": "few steps show the initial tension",

@@ -2,7 +2,7 @@
 
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,6 +18,7 @@ from coilset.model.base.entry import check_entries
 from coilset.model.case.case import Case
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.record import Step
+from coilset.model.results.records.releases import releases
 from coilset.model.run.analysis import Analysis
 from coilset.model.spring_fit.pressing import Pressing
 from coilset.model.uniform_coil.equivalent import coil
@@ -130,6 +131,8 @@ def steps(
 ) -> list[list[Step]]:
     """Steps of each branch of the rod between its seats, with its contacts and the past of its wire.
 
+    Where lengths are measured, they are of the spring that nothing holds: a release ends at its travel.
+
     Args:
         pressing: of which spring.
         material: content of a material file.
@@ -146,13 +149,17 @@ def steps(
         file.write_text(yaml.safe_dump(dict(material)), encoding="utf-8")
         loading = [phase for _, phase in program]
         entries = pressing.case.model_dump(mode="json")
-        entries |= {"material": str(file), "loading": loading, "accuracy": "none", "rates_at": []}
+        release = "free" if pressing.lengths else "held"  # a tester holds the spring whose force it reads
+        entries |= {"material": str(file), "loading": loading, "accuracy": "none", "rates_at": [], "release": release}
         section = entries["mesh"]["section"]
         if section["kind"] != "warping":
             entries["mesh"] |= fine.mesh
             if fine.shaped or (entries["spring"].get("wire") is None and not pressing.coiled):
                 section |= fine.section
-        run = Analysis(check_entries(entries, Case), MPI.COMM_SELF, detailed=False).run().steps
+        analysis = Analysis(check_entries(entries, Case), MPI.COMM_SELF, detailed=False)
+        result = analysis.run()
+    freed = {one.step.number: one.set for one in releases(analysis.setup, result) if one.snapshot.free}
+    run = [replace(step, travel_mm=freed.get(step.number, step.travel_mm)) for step in result.steps]
     return [[step for step in run if program[step.phase][0] == branch] for branch in range(len(ends))]
 
 
