@@ -1,6 +1,7 @@
-"""The version of coilset, which pyproject.toml reads from here, and those of what its numbers rest on."""
+"""The version of coilset, and those of what its numbers rest on."""
 
-__version__ = "0.1.0"
+from coilset import __version__
+
 LIBRARIES = {
     "DOLFINx": ("fenics-dolfinx", "dolfinx-solver-real"),
     "petsc4py": ("petsc4py",),

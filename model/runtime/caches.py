@@ -12,23 +12,27 @@ from coilset.model.runtime.switches import enabled
 SOURCES = Path(__file__).resolve().parents[1]  # all of model
 
 
-def keep_by_content() -> None:
-    """Give each version of the compiled functions a folder of its own in numba's cache.
+def folder() -> Path:
+    """Where compiled functions of coilset are kept; those of a user's own stay where numba keeps them.
 
-    Numba recompiles a function when its own file changes, but not when the file of a function that it calls changes: it
-    would use the machine code with the old one.
+    `NUMBA_CACHE_DIR`, if it is set, is for both.
     """
+    if given := os.environ.get("NUMBA_CACHE_DIR"):
+        return Path(given)
+    cache = os.environ.get("COILSET_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache", "coilset")
+    release = os.environ.get("COILSET_RELEASE")
+    return Path(cache).expanduser() / (f"numba-{release}" if release else "numba")
+
+
+@functools.cache
+def version() -> str:
+    """Of all compiled functions, by the content of their files, in hexadecimals."""
     content = hashlib.sha256()
     for path in sorted(SOURCES.rglob("*.py")):
         text = path.read_bytes()
         if b"njit" in text:
             content.update(text)
-    root = os.environ.get("NUMBA_CACHE_DIR") or Path.home() / ".cache" / "coilset" / "numba"
-    version = content.hexdigest()[:16]
-    if Path(root).name != version:  # a process started by this one has it already
-        os.environ["NUMBA_CACHE_DIR"] = str(Path(root) / version)
-    if "numba" in sys.modules:  # it has read its environment
-        sys.modules["numba"].config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+    return content.hexdigest()[:16]
 
 
 def load_without_compiler() -> None:

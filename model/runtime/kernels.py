@@ -2,19 +2,22 @@
 
 import functools
 import hashlib
-import os
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from numba import njit
 from numba.core import caching
 
+from coilset.model.runtime import caches
+
 __all__ = ["COMPILED", "INLINE", "KERNEL", "PASTED", "njit"]
 
+# A version of numba without such places would keep kernels by path and date; ByContent takes the first of them.
+PLACES: list[type] | None = getattr(caching.CacheImpl, "_locator_classes", None)
 # No checks of divisors; no wrapper for C, which nothing calls and takes a tenth of the time.
-COMPILED = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+COMPILED = {"cache": PLACES is not None, "error_model": "numpy", "no_cfunc_wrapper": True}
 KERNEL = COMPILED | {"fastmath": {"contract"}}  # the material's: multiply-add contracted
 INLINE = KERNEL | {"forceinline": True}  # put into their caller
 # Put into their few callers before these are compiled: numba optimises a function once more with each that calls it.
@@ -38,7 +41,7 @@ class ByContent(caching._CacheLocator):
     def __init__(self, function: Callable, file: Path) -> None:
         self.line = function.__code__.co_firstlineno
         self.digest = digest(file)
-        self.folder = Path(os.environ["NUMBA_CACHE_DIR"]).parent / "kernels" / file.relative_to(ROOT) / self.digest
+        self.folder = caches.folder() / "kernels" / file.relative_to(ROOT) / self.digest
 
     def get_cache_path(self) -> str:
         """Its folder."""
@@ -102,6 +105,5 @@ def _files(module: str, names: str) -> Iterator[Path]:
         yield base.with_suffix(".py")
 
 
-# A version of numba without such places keeps kernels in its own way.
-places: Any = getattr(caching.CacheImpl, "_locator_classes", [])
-places.insert(0, ByContent)
+if PLACES is not None:
+    PLACES.insert(0, ByContent)

@@ -5,34 +5,43 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numba
 import pytest
 
 from coilset.model.material.point.stage import evaluate
 from coilset.model.runtime import caches, kernels
 
 
-def version(monkeypatch, sources, root="kept"):
+def version(monkeypatch, sources):
     monkeypatch.setattr(caches, "SOURCES", sources)
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(root))
-    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
-    caches.keep_by_content()
-    assert os.environ["NUMBA_CACHE_DIR"] == numba.config.CACHE_DIR
-    return numba.config.CACHE_DIR
+    return caches.version.__wrapped__()
 
 
-def test_a_changed_callee_gives_a_new_folder(monkeypatch, tmp_path):
+def test_a_changed_callee_gives_a_new_version(monkeypatch, tmp_path):
     """Numba looks at the caller's file only."""
     (tmp_path / "caller.py").write_text("@njit\ndef a(): return b()")
     callee = tmp_path / "callee.py"
     callee.write_text("@njit\ndef b(): return 1")
     first = version(monkeypatch, tmp_path)
     assert version(monkeypatch, tmp_path) == first
-    assert version(monkeypatch, tmp_path, first) == first  # as in a process that this one starts
     (tmp_path / "plain.py").write_text("c = 1")
     assert version(monkeypatch, tmp_path) == first
     callee.write_text("@njit\ndef b(): return 2")
     assert version(monkeypatch, tmp_path) != first
+
+
+IMPORT = """
+import os, sys
+{0}
+from adding import add
+print(add._cache._cache_path, len(os.environ), os.environ.get("NUMBA_CACHE_DIR"))
+"""
+
+
+@pytest.mark.parametrize("given", [None, "elsewhere"])
+def test_functions_of_a_user_stay_where_numba_keeps_them(tmp_path, given):
+    """And the environment, which processes that are started inherit, as it is."""
+    run = with_functions_kept_in(tmp_path, given and str(tmp_path / given))
+    assert run(IMPORT.format("import coilset.api, coilset.open")) == run(IMPORT.format("import numba"))
 
 
 @pytest.fixture
@@ -120,25 +129,31 @@ print(twice(np.arange(4.0)), *(sum(one.stats.cache_hits.values()) for one in (ad
 
 def test_what_is_compiled_is_loaded_without_the_compiler(tmp_path):
     """Which is there when it is needed: for whole numbers, after the function of floating-point numbers was loaded."""
-    run = with_functions_kept_in(tmp_path)
+    run = with_functions_kept_in(tmp_path, str(tmp_path / "cache"))
     assert run(LOAD) == ["6.0", "0", "True", "6"]
     assert run(LOAD) == ["6.0", "1", "False", "6"]
 
 
 def test_what_is_loaded_becomes_part_of_callers_that_are_compiled_later(tmp_path):
     """Which are kept, and need it no more."""
-    run = with_functions_kept_in(tmp_path)
+    run = with_functions_kept_in(tmp_path, str(tmp_path / "cache"))
     assert run(LOAD)[1] == "0"
     assert run(CALL, "add") == ["12.0", "1", "0"]
     assert run(CALL) == ["12.0", "0", "1"]
 
 
-def with_functions_kept_in(folder):
-    """A function that runs a script, for which ADD and TWICE are there, and gives the words that it prints."""
+def with_functions_kept_in(folder, cache):
+    """A function that runs a script, for which ADD and TWICE are there, and gives the words that it prints.
+
+    Args:
+        folder: of the functions.
+        cache: NUMBA_CACHE_DIR; None: it is not set.
+    """
     (folder / "adding.py").write_text(ADD)
     (folder / "doubling.py").write_text(TWICE)
     paths = os.pathsep.join([str(folder), os.environ.get("PYTHONPATH", "")])
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache"), "PYTHONPATH": paths}
+    kept = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    environment = kept | {"PYTHONPATH": paths} | ({} if cache is None else {"NUMBA_CACHE_DIR": cache})
 
     def run(*script):
         command = [sys.executable, "-c", *script]

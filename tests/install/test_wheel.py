@@ -32,7 +32,7 @@ def test_every_package_is_in_the_list():
     with open(REPOSITORY / "pyproject.toml", "rb") as file:
         listed = tomllib.load(file)["tool"]["setuptools"]["packages"]
     there = {path.parent.relative_to(REPOSITORY) for room in ROOMS for path in (REPOSITORY / room).rglob("*.py")}
-    assert sorted(listed) == sorted(".".join(("coilset", *folder.parts)) for folder in there)
+    assert sorted(listed) == ["coilset", *sorted(".".join(("coilset", *folder.parts)) for folder in there)]
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def installed(tmp_path_factory):
     folder = tmp_path_factory.mktemp("wheel")
     for room in ROOMS:
         shutil.copytree(REPOSITORY / room, folder / "source" / room, ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("pyproject.toml", "README.md", "api.py", "open.py"):
+    for name in ("pyproject.toml", "README.md", "__init__.py", "api.py", "open.py", "py.typed"):
         shutil.copy(REPOSITORY / name, folder / "source")
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check"]
     offline = ["--no-deps", "--no-index"]
@@ -62,9 +62,51 @@ def test_it_is_the_wheel_that_runs(installed, tmp_path):
     where = f"import {', '.join(modules)}; print({', '.join(f'{name}.__file__' for name in modules)})"
     for path in run([sys.executable, "-c", where], tmp_path, PYTHONPATH=str(installed)).split():
         assert Path(path).is_relative_to(installed)
-    for room in ROOMS[:4]:
-        assert (installed / "coilset" / room / "py.typed").is_file()
     assert (installed / "bin" / "coilset").is_file()
+
+
+def test_a_folder_of_the_same_name_does_not_hide_it(installed, tmp_path):
+    """As that of one's results; a checkout of that name would."""
+    (tmp_path / "coilset").mkdir()
+    where = "import coilset.api; print(coilset.__version__, coilset.api.__file__)"
+    version, path = run([sys.executable, "-c", where], tmp_path, PYTHONPATH=str(installed)).split()
+    assert version == __version__
+    assert Path(path).is_relative_to(installed)
+
+
+def test_it_is_typed_for_others(installed):
+    """By PEP 561 a checker reads annotations of packages with this file at their top."""
+    assert (installed / "coilset" / "py.typed").is_file()
+
+
+USE = """
+from coilset.api import Case, solve
+
+result = solve(Case.read("case.yaml"))
+reveal_type(result.force)
+reveal_type(result.set)
+reveal_type(result.force_at(1.0))
+result.force_at("1 mm")
+"""
+SEEN = ["numpy.ndarray", "builtins.float, None", "builtins.float", 'has incompatible type "str"; expected "float"']
+OPTIONS = ["--ignore-missing-imports", "--follow-imports=silent"]
+
+
+@pytest.mark.slow
+def test_others_see_the_types(installed, tmp_path):
+    """By mypy, which need not read the libraries for that."""
+    pytest.importorskip("mypy")
+    (tmp_path / "use.py").write_text(USE)
+    with open(REPOSITORY / "pyproject.toml", "rb") as file:
+        (libraries,) = (one for one in tomllib.load(file)["tool"]["mypy"]["overrides"] if "numba.*" in one["module"])
+    skipped = f"[mypy]\n[mypy-{','.join(libraries['module'])}]\nfollow_imports = skip\n"
+    (tmp_path / "mypy.ini").write_text(skipped)
+    command = [sys.executable, "-m", "mypy", *OPTIONS, "--cache-dir", str(tmp_path / "cache"), "use.py"]
+    environment = os.environ | {"MYPYPATH": str(installed)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    for line, found in zip(done.stdout.splitlines(), SEEN, strict=False):
+        assert found in line
+    assert "Found 1 error" in done.stdout
 
 
 def test_every_file_of_data_is_there(installed):

@@ -2,9 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-from click import Command, Context
+from typing import TYPE_CHECKING, Any
 
 from coilset.model.base.errors import InputError
 from coilset.scripts.commands.fitting.files import files_to_write, write_material, write_picture
@@ -27,8 +25,8 @@ UNKNOWN = typer.Option([], metavar="NAME", help="fit friction, compliance or off
 class MaterialGroup(typer.core.TyperGroup):
     """The commands of `coilset material`; `fit --spring` is `fit-springs`."""
 
-    def resolve_command(self, ctx: Context, args: list[str]) -> tuple[str | None, Command | None, list[str]]:
-        """See click."""
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """See typer's own, whose types belong to a library that only some of its versions come with."""
         if args[:1] == ["fit"] and FLAG in args:
             args = [NAME, *(arg for arg in args[1:] if arg != FLAG)]
         return super().resolve_command(ctx, args)
