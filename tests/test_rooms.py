@@ -54,7 +54,7 @@ PARAMETERS = {
     "model/section/warping.py": 2,
     "model/uniform_coil/rod.py": 1,
 }
-CTYPES = {"model/equilibrium/system/aij.py", "model/material/law/mfront.py"}
+CTYPES = {"model/equilibrium/system/coo.py", "model/material/law/mfront.py"}
 
 
 def test_a_folder_has_at_most_fourteen_files():

@@ -1,8 +1,8 @@
-"""The tangent as a PETSc matrix whose rows have room for contacts.
+"""The tangent as a PETSc matrix: the sum of the elements' tangents and of the contacts' stiffness.
 
-A new entry in a full row would move the whole matrix, so the rows are reallocated when contacts close for which the
-matrix has no entries. At the start of a solve they are allocated for exactly the contacts that are closed, so that the
-rounding of a factorisation does not depend on the history.
+Its entries are allocated for all elements and for some contacts, and again when others close. At the start of a solve
+they are allocated for exactly the contacts that are closed, so that the rounding of a factorisation does not depend on
+the history.
 """
 
 from collections.abc import Sequence
@@ -12,11 +12,12 @@ from petsc4py import PETSc
 
 from coilset.model.body.body import Body
 from coilset.model.contact.base import Contribution
-from coilset.model.equilibrium.system.aij import AijEntries
-from coilset.model.equilibrium.system.element_entries import ElementEntries, set_rows
+from coilset.model.equilibrium.system.coo import SumOfMatrices
 from coilset.model.equilibrium.system.factors import FILL_REDUCING, NATURAL
-from coilset.model.equilibrium.system.joined import add_matrices, join_patterns, number_pairs
 from coilset.model.equilibrium.system.layout import Layout, LineLayout
+from coilset.model.equilibrium.system.sums import add_matrices
+
+END = np.array([np.iinfo(np.int64).max])  # behind the numbers of contacts
 
 
 class TangentMatrix:
@@ -28,18 +29,16 @@ class TangentMatrix:
 
     Attributes:
         mat: PETSc's matrix.
-        version: how often its rows were allocated; older factors are invalid.
+        version: how often its entries were allocated; older factors are invalid.
         ordering: PETSc's name of the order in which its LU should eliminate, the same on all ranks.
     """
 
     def __init__(self, body: Body, layout: Layout) -> None:
         self.body, self.layout = body, layout
         self.mat, self.version, self.ordering = body.create_matrix(layout.size_local), 0, NATURAL
-        self._places, self._known = list[int](), set[int]()
-        self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, while there are some
-        self._entries: AijEntries | None = None
-        self._unknowns, self._stop = np.empty(0, PETSc.IntType), 0  # of contacts, in the entries' numbers, all below
-        self._elements = None if body.element_dofs is None else ElementEntries(body, layout)
+        self._sum: SumOfMatrices | None = None
+        # Numbers of the contacts that it has room for, ascending, and where the stiffness of each begins; END: it ends
+        self._known, self._starts = END, np.zeros(1, np.int64)
 
     def fill(self, contributions: Sequence[Contribution], exactly: bool = False, share: float | None = None) -> None:
         """Set it to the body's tangent and the stiffness of contacts; collective.
@@ -49,93 +48,78 @@ class TangentMatrix:
             exactly: whether it is to have room for no others.
             share: as in `Body.element_tangents`.
         """
-        self._clear(contributions, exactly)
-        if self._elements is not None:
-            assert self._entries is not None
-            own, _ = self._entries.arrays()
-            self._elements.add(self.mat, own, share)
-            self._add_contacts(contributions)
+        if self.body.element_dofs is None:
+            self.mat.zeroEntries()
+            self.body.tangent(self.mat)
+            self.mat.assemble()
             return
-        self.body.tangent(self.mat)
-        self.mat.assemble()
+        closed = [part for part in contributions if len(part.dofs)]
+        starts, begin = self._room_for(closed, exactly), 0
+        assert self._sum is not None
+        for cells, tangents in self.body.element_tangents(share):
+            self._sum.parts[0][cells] = tangents
+        stiffness = self._sum.values[len(self._sum.values) - self._starts[-1] :]
+        stiffness[:] = 0.0
+        for part in closed:
+            add_matrices(part.stiffness, starts[begin : begin + len(part.dofs)], stiffness)
+            begin += len(part.dofs)
+        self._sum.assemble()
 
     def hold(self, held: np.ndarray) -> None:
         """Set the rows of prescribed increments, given by their places on this rank; collective.
 
         See Body.
         """
-        if self._entries is None:
-            self.body.hold(self.mat, held + self.layout.start)
-            return
-        own, others = self._entries.arrays()
-        set_rows(*self._entries.own, held, self.body.constraint_weight, own)
-        if len(others):
-            set_rows(*self._entries.others, held, 0.0, others)
+        rows = (held + self.layout.start).astype(PETSc.IntType)
+        if self.body.element_dofs is None:
+            self.body.hold(self.mat, rows)
+        else:
+            self.mat.zeroRows(rows, diag=self.body.constraint_weight)
 
-    def _clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
-        """Zero it, with room for the closed contacts; with `exactly`, for no others."""
-        places = self._contact_places(contributions).tolist()
-        fits = places == self._places or (not exactly and self._known.issuperset(places))
-        fits = self._elements is None or (fits and self._entries is not None)
+    def _room_for(self, closed: Sequence[Contribution], exactly: bool) -> np.ndarray:
+        """Where the stiffness of each contact element begins; collective.
+
+        The entries are allocated anew unless there is room for all of them; with `exactly`, for no others.
+        """
+        numbers = np.concatenate([END[:0], *(self._numbers(part.dofs) for part in closed)])
+        found = self._known.searchsorted(numbers)
+        fits = self._sum is not None and bool((self._known[found] == numbers).all())
+        if exactly:
+            fits = fits and len(np.unique(found)) == len(self._known) - 1
         if self.layout.comm.size > 1:
             fits = self.layout.comm.allreduce(int(fits)) == self.layout.comm.size
-        if fits:
-            self.mat.zeroEntries()
-        else:
-            self._make_room(contributions)
-            self._places, self._known = places, set(places)
+        if not fits:
+            self._allocate(closed)
+            found = self._known.searchsorted(numbers)
+        return self._starts[found]
 
-    def _add_contacts(self, contributions: Sequence[Contribution]) -> None:
-        """Add the stiffness of contacts."""
-        entries, acting = self._entries, [part for part in contributions if len(part.dofs)]
-        if not acting:
-            return
-        assert entries is not None
-        values = entries.arrays()
-        for part in acting:
-            add_matrices(entries.own, entries.others, self._unknowns, part.dofs, part.stiffness, self._stop, values)
+    def _numbers(self, dofs: np.ndarray) -> np.ndarray:
+        """Of contact elements, shape (m, k) → (m,): k, the first and the last dof identify the bodies in contact."""
+        size = self.layout.size
+        return (dofs.shape[1] * size + dofs[:, 0]) * size + dofs[:, -1]
 
-    def _make_room(self, contributions: Sequence[Contribution]) -> None:
-        """Allocate the rows anew: those of the body, and what the contacts join."""
-        layout, elements, tables = self.layout, self._elements, []
-        assert elements is not None
-        for part in contributions:
-            if len(part.dofs):
-                assert isinstance(layout, LineLayout)
-                once = np.unique(self._contact_places([part]), return_index=True)[1]  # several may join the same
-                tables.append(layout.contact_dofs[part.dofs[once]])
-        pattern = bare = self._bare_pattern(elements) if self._bare is None else self._bare
-        if tables:
-            pattern = join_patterns(bare, tables, layout.start, layout.size)
-        self._bare = bare if tables else None  # which fills as much memory as a third of the matrix
-        self.mat.setPreallocationCSR(pattern)
-        self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
-        self._entries = AijEntries(self.mat)
-        if tables:
+    def _allocate(self, closed: Sequence[Contribution]) -> None:
+        """Allocate the entries of the elements, of the extra unknowns' diagonal and of contacts; collective."""
+        layout, local = self.layout, self.body.element_dofs
+        assert local is not None
+        elements = layout.index_map.local_to_global(local.ravel()).reshape(local.shape)
+        extra = np.arange(layout.start + layout.owned, layout.stop)[:, None]
+        tables = [(elements, elements), (extra, extra)]
+        known, starts = [END[:0]], [np.zeros(1, np.int64)]
+        for size in sorted({part.dofs.shape[1] for part in closed}):
             assert isinstance(layout, LineLayout)
-            self._unknowns = self._entries.local(layout.contact_dofs).astype(PETSc.IntType)  # as on one rank
-            self._stop = int(self._unknowns.max()) + 1
-        elements.find(self._entries)
+            dofs = np.concatenate([part.dofs for part in closed if part.dofs.shape[1] == size])
+            numbers, once = np.unique(self._numbers(dofs), return_index=True)  # several may join the same bodies
+            unknowns = layout.contact_dofs[dofs[once]]
+            here = (unknowns >= layout.start) & (unknowns < layout.stop)
+            tables.append((np.where(here, unknowns, -1), unknowns))  # other ranks add their rows of it themselves
+            known.append(numbers)
+            starts.append(starts[-1][-1] + size**2 * np.arange(1, len(numbers) + 1))
+        self._known, self._starts = np.concatenate([*known, END]), np.concatenate(starts)
+        self._sum = None  # so that its memory is free
+        self._sum = SumOfMatrices(self.mat, tables)
         # Contacts add entries outside the band. Pattern and factors take 0.8, 8.1, 3.1 ms in band order and 0.4, 6.6,
         # 1.9 ms in the other one for the example, the closed and ground spring, the hourglass, each with friction; with
         # 2,560 elements in 2.5 windings factors take 2.8 s or 11 ms.
-        touching = layout.comm.allreduce(len(tables)) > 0
-        self.ordering = FILL_REDUCING if touching else NATURAL
+        self.ordering = FILL_REDUCING if layout.comm.allreduce(len(closed)) > 0 else NATURAL
         self.version += 1
-
-    def _bare_pattern(self, elements: ElementEntries) -> tuple[np.ndarray, np.ndarray]:
-        """Indptr and indices of the body alone, and of the seats' diagonal."""
-        layout = self.layout
-        none = np.zeros(layout.size_local + 1, PETSc.IntType), np.empty(0, PETSc.IntType)
-        seats = np.arange(layout.start + layout.owned, layout.stop, dtype=PETSc.IntType)[:, None]
-        return join_patterns(none, [*elements.tables, seats], layout.start, layout.size)
-
-    def _contact_places(self, contributions: Sequence[Contribution]) -> np.ndarray:
-        """A number for each contact element from its first and last dof, which identify the bodies in contact."""
-        places, begin = np.empty(sum(len(part.dofs) for part in contributions), dtype=np.int64), 0
-        for part in contributions:
-            if len(part.dofs):
-                assert isinstance(self.layout, LineLayout)
-                number_pairs(part.dofs, len(self.layout.contact_dofs), places[begin : begin + len(part.dofs)])
-                begin += len(part.dofs)
-        return places

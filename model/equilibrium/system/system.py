@@ -13,10 +13,10 @@ from coilset.model.body.lever import Swing
 from coilset.model.body.state import Where
 from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution
 from coilset.model.equilibrium.system.contact_parts import ContactParts, carried
-from coilset.model.equilibrium.system.joined import add_vectors
 from coilset.model.equilibrium.system.layout import Layout, LineLayout
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.matrix import TangentMatrix
+from coilset.model.equilibrium.system.sums import add_vectors
 from coilset.model.rotations.vectors import nearest_vector, rotation_matrix
 
 EXPIRED = b""  # in the place of the increments of an evaluation
