@@ -42,10 +42,14 @@ def critical_travel(
 def buckling_travel(spring: Spring, modulus_ratio: float = STEEL.shear_modulus / STEEL.young_modulus) -> float:
     """Travel at which a spring buckles between parallel seats by `critical_travel`, mm; infinite if it never does.
 
+    Seats do not press a spring with hooks or arms: it is infinite.
+
     Args:
         spring: `Spring`; its minimum mean diameter is used.
         modulus_ratio: G/E.
     """
+    if spring.has_tails:
+        return inf
     diameter = 2 * float(np.min(spring.mean_radius(spring.breaks)))
     if spring.section is not None:
         wire = WireNumbers.of(spring.section, float(spring.wire_diameter(0.5 * spring.turns)), diameter)

@@ -7,11 +7,12 @@ from math import inf
 from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.case import Case
+from coilset.model.case.loading import pulls, rotations
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
 from coilset.model.standards.from_results import Found
-from coilset.model.standards.rate import OnPoint, tails_compliance
-from coilset.model.standards.sheet import Sheet, pulled_lengths, pulls, rotations, working_lengths
+from coilset.model.standards.rate import OnPoint, hook_stress, tails_compliance
+from coilset.model.standards.sheet import Sheet, pulled_lengths, working_lengths
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic, case_law, warm_elastic
 
@@ -39,17 +40,16 @@ def case_sheet(
         InputError: a spring that is not cylindrical, an unknown wire, a length that the spring cannot have, or a
             temperature outside the material's table.
     """
-    law, cylinder = case_law(case, spring), Cylinder.of(spring)
+    law, cylinder, pulled = case_law(case, spring), Cylinder.of(spring), pulls(case, spring)
     named = wire_name or getattr(case.material, "wire", None)
     known = wire(named) if named else None
     elastic = warm_elastic(known, cylinder.d, case.temperature) if known else case_elastic(case, law)
+    low, high = (cylinder.length, inf) if pulled else (cylinder.solid, cylinder.length)
     for length in lengths:
-        if not cylinder.solid < length < cylinder.length:
-            raise InputError(
-                f"{length:g} mm is no working length; must be between the block length {cylinder.solid:.4g} and the "
-                f"free length {cylinder.length:.4g} mm",
-                "--length",
-            )
+        if not low < length < high:
+            between = f"between the block length {low:.4g} and the free length {high:.4g} mm"
+            between = f"above the free length {low:.4g} mm, as the spring is pulled" if pulled else between
+            raise InputError(f"{length:g} mm is no working length; must be {between}", "--length")
     E, G, turns_to = elastic.young_modulus, elastic.shear_modulus, rotations(case, spring)
     made = Sheet(
         cylinder,
@@ -64,17 +64,17 @@ def case_sheet(
         held=not case.ends_turn,
         yield_stress=law.first_yield(case.temperature),
         strength=law.data.tensile_strength if isinstance(case.material, str) else None,
-        pulled=pulls(case, spring),
+        pulled=pulled,
         turns_to=turns_to,
         tension=getattr(case.spring, "initial_tension", None) or 0.0,
         beyond=tails_compliance(spring, E, G, bool(turns_to)),
+        hook_stress=hook_stress(spring) if pulled else 0.0,
         on_point=OnPoint.of(spring, E, G),
     )
     if lengths:
         return made
     if case.working:
         given = (*case.working.lengths, *map(made.length, case.working.forces))
-        low, high = (cylinder.length, inf) if made.pulled else (cylinder.solid, cylinder.length)
         return replace(made, lengths=tuple(one for one in given if low < one < high))
     if made.pulled:
         return replace(made, lengths=tuple(pulled_lengths(case, spring)))

@@ -7,18 +7,25 @@ from coilset.model.base.errors import InputError
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.case import SectionSpec
+from coilset.model.case.loading import is_pressed
 from coilset.model.case.phases import TimePhase
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.own import OwnLaw
 from coilset.model.standards import en13906
+from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.sheet import Sheet, pulls, working_lengths
+from coilset.model.standards.sheet import Sheet, working_lengths
 from coilset.model.standards.spring_warnings import spring_warnings
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic
 from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE
-from coilset.model.standards.working_warnings import endurance_warnings, gap_warnings, stress_warnings
+from coilset.model.standards.working_warnings import (
+    endurance_warnings,
+    gap_warnings,
+    strength_warnings,
+    stress_warnings,
+)
 
 COARSE = 0.1  # an accuracy that is rather meant in per cent
 
@@ -26,7 +33,6 @@ COARSE = 0.1  # an accuracy that is rather meant in per cent
 def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
     """Warnings about a case, before it runs."""
     elastic = case_elastic(case, law)
-    own = [one for one in spring_warnings(spring, elastic) if not (one.name == "buckling" and pulls(case, spring))]
     return (
         *_renamed(case),
         *_accuracy(case),
@@ -34,7 +40,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         *warm_warnings(case, law, None if isinstance(case.material, str) else case.material.wire),
         *_supports(case, spring),
         *_warping(case, spring, law),
-        *own,
+        *spring_warnings(spring, elastic, is_pressed(case, spring)),
         *_working(case, spring, elastic),
     )
 
@@ -140,9 +146,9 @@ def _warping(case: Case, spring: Spring, law: Law) -> Iterator[Warning]:
 
 def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
     """Warnings about the load program, for cylinders of constant wire diameter, to which the formulas apply."""
-    if pulls(case, spring):  # the standards are for compression springs
-        return []
     try:
+        if not is_pressed(case, spring):
+            return sheet_warnings(case_sheet(case, spring, None), [])
         cylinder = Cylinder.of(spring)
     except InputError:
         return []
@@ -156,11 +162,12 @@ def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
 def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:
     """Warnings about the working lengths of a sheet; `to_block` has the block length, mm, if the spring is compressed
     to it, which is checked for stress only."""
-    if made.pulled:
-        return []
-    found = gap_warnings(made)
-    if made.wire:
-        found += stress_warnings(made, [*made.lengths, *to_block], made.wire)
+    if made.pulled or made.turns_to:  # gaps and the stress allowed at block are of compression springs
+        found = strength_warnings(made)
+    else:
+        found = gap_warnings(made)
+        if made.wire:
+            found += stress_warnings(made, [*made.lengths, *to_block], made.wire)
     if made.cycle and made.endured:
         found += endurance_warnings(made.cycle, made.endured)
     return found

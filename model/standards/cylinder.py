@@ -100,7 +100,7 @@ class Cylinder:
 
     @property
     def of_rate(self) -> float:
-        """Diameter of the round wire of the same torsional stiffness, mm."""
+        """Diameter of the round wire whose formula gives its rate, mm."""
         return self.wire.of_rate if self.wire else self.d
 
     @property

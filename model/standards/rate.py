@@ -1,15 +1,18 @@
 """The torsion of the wire: the rate of a spring by it alone, and the round wires that stand for one that is not round.
 
 EN 13906-1 reads the factors of rectangular wire off diagrams. Here they are computed for any section: its torsion
-constant J and section modulus W of a straight wire (Saint-Venant), and the greatest shear on the surface of a coil,
-without pitch, over F D/(2 W). With d⁴ = 32 J/π, d³ = 16 W/π and d² = 4 A/π the formulas of round wire hold.
+constant J and section modulus W of a straight wire (Saint-Venant); the rate of a coil, without pitch, over that by J
+alone, c; and the greatest shear on its surface over F D/(2 W). With d⁴ = 32 c J/π, d³ = 16 W/π and d² = 4 A/π the
+formulas of round wire hold. Of round wire c is 1/(1 − 3/(16 w²)) but for terms in 1/w⁴ (Ancker and Goodier), which
+the standard leaves out; of a flat rectangle in a tight coil it is some per cent.
 """
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -17,8 +20,10 @@ from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.section.outlined_section import Outlined, Section
+from coilset.model.standards.en13906 import bending_correction
 
 AROUND = 720  # points on the surface at which the greatest shear is sought, and of the coils, for their moment
+STRAIGHT = 1e-9  # curvature of straight wire, 1/mm
 VERTICAL = 1e-6  # sine of the angle to the axis below which an arm is axial
 
 
@@ -31,6 +36,7 @@ class WireNumbers:
         torsion: J, mm⁴.
         modulus: W, torque over the greatest shear stress of a straight wire, mm³.
         area: A, mm².
+        curved: c, rate of the coil, with its curvature and the direct shear, over 4 G J/(π D³ n).
         correction: greatest shear stress in the coil over F D/(2 W).
         out_of_plane, in_plane: second moments of area ∫ z² dA and ∫ y² dA about the middle, mm⁴.
     """
@@ -39,6 +45,7 @@ class WireNumbers:
     torsion: float
     modulus: float
     area: float
+    curved: float
     correction: float
     out_of_plane: float
     in_plane: float
@@ -50,23 +57,24 @@ class WireNumbers:
         section, r = Outlined(boundary), 0.5 * height
         places, weights = section.fine
         second = pi * r**4 * weights @ (places - weights @ places / weights.sum()) ** 2
-        straight = _greatest(section, boundary, 0.0, np.array([0.0, 0.0, 1.0]))
         bend = height / mean_diameter
-        coiled = _greatest(section, boundary, bend, np.array([0.0, bend, 1.0]))
+        twisted, coiled = _under(section, 0.0), _under(section, bend)
+        straight, most = (_greatest(section, boundary, one) for one in (twisted, coiled))
         return cls(
             width=r * float(np.ptp(boundary.polygon[:, 0])),
             torsion=section.warping().torsion * r**4,
             modulus=r**3 / straight,
             area=r**2 * boundary.area,
-            correction=coiled / straight,
+            curved=twisted.work / coiled.work,
+            correction=most / straight,
             out_of_plane=float(second[1]),
             in_plane=float(second[0]),
         )
 
     @property
     def of_rate(self) -> float:
-        """Diameter of the round wire of the same torsional stiffness, mm."""
-        return float((32.0 * self.torsion / pi) ** 0.25)
+        """Diameter of the round wire whose formula gives the rate of the coil, mm."""
+        return float((32.0 * self.curved * self.torsion / pi) ** 0.25)
 
     @property
     def of_stress(self) -> float:
@@ -84,12 +92,26 @@ class WireNumbers:
         return half / self.out_of_plane, half / self.in_plane
 
 
-def _greatest(section: Section, boundary: Boundary, bend: float, load: np.ndarray) -> float:
-    """Greatest shear on the surface for Q2, Q3 and Mt/r, with r = 1."""
-    warping, places = section.warping(bend), boundary.points(AROUND)
-    strain = np.linalg.solve(pi * warping.stiffness, load)
-    shear = np.einsum("ijp,j->ip", warping.shear(places), strain) / (1.0 - bend * places[:, 0])
-    return float(np.hypot(*shear).max())
+class _Loaded(NamedTuple):
+    """A section of curvature `bend` under the torque r of a force 1/R along the axis, with r = 1, and their work."""
+
+    bend: float
+    strain: np.ndarray
+    work: float
+
+
+def _under(section: Section, bend: float) -> _Loaded:
+    """Shear Q3 = F = Mt/R beside the torque Mt = 1; none of a straight wire."""
+    load = np.array([0.0, bend, 1.0])
+    strain = np.linalg.solve(pi * section.warping(bend).stiffness, load)
+    return _Loaded(bend, strain, float(load @ strain))
+
+
+def _greatest(section: Section, boundary: Boundary, loaded: _Loaded) -> float:
+    """Greatest shear on the surface."""
+    places = boundary.points(AROUND)
+    shear = np.einsum("ijp,j->ip", section.warping(loaded.bend).shear(places), loaded.strain)
+    return float(np.hypot(*(shear / (1.0 - loaded.bend * places[:, 0]))).max())
 
 
 def torsion_rate(spring: Spring, shear_modulus: float) -> float:
@@ -140,6 +162,31 @@ def _compliance(
         return (torque**2 / (2.0 * G) + bending / E) / inertia * spring.speed(t)
 
     return float(functions.integral(density, part).sum())
+
+
+def hook_stress(spring: Spring) -> float:
+    """Greatest stress along the wire of hooks by a pull of 1 N, MPa; 0 without hooks.
+
+    q · 32 M/(π d³) + 4 N/(π d²) of round wire, with the bending moment and the pull along the wire of
+    `tails_compliance`, and q of a curved wire for bending in its plane. The torsion where a hook begins is left out.
+    """
+    axis, corners, greatest = np.array([0.0, 0.0, 1.0]), spring.corners, 0.0
+    first, last = spring.held
+    pieces = (corners[(corners >= first) & (corners <= 0.0)], corners[(corners >= spring.turns) & (corners <= last)])
+    for tail, held, piece in zip(spring.tails, spring.held, pieces, strict=True):
+        if tail is None or not tail.pulled:
+            continue
+        inner = (np.linspace(a, b, AROUND)[1:-1] for a, b in itertools.pairwise(piece))  # bends end at the corners
+        t = np.concatenate(list(inner))
+        tangent, d, bend = spring.tangent(t), spring.wire_diameter(t), spring.curvature_vector(t)
+        moment = np.cross(np.cross(spring.centre_line(np.array([held])) - spring.centre_line(t), axis), tangent)
+        curvature = np.maximum(np.linalg.norm(bend, axis=-1), STRAIGHT)
+        within = np.sum(moment * bend, axis=-1) / curvature
+        across = np.sqrt(np.maximum(np.sum(moment**2, axis=-1) - within**2, 0.0))
+        q = np.array([bending_correction(index) for index in (2.0 / (curvature * d)).tolist()])
+        bent = 32.0 * np.hypot(q * within, across) / (pi * d**3)
+        greatest = max(greatest, float((bent + 4.0 * np.abs(tangent @ axis) / (pi * d**2)).max()))
+    return greatest
 
 
 @dataclass(frozen=True)
@@ -194,7 +241,7 @@ def pitch_compliance(angle: float, nu: float, ends: Literal["turning", "held"] =
 
     Args:
         angle: pitch angle α, rad; tan α = pitch/(π D).
-        nu: Poisson's ratio.
+        nu: Poisson's ratio; of wire that is not round E I/(G J) − 1, I of bending in the plane of the coil.
         ends: whether the ends may turn about the axis.
     """
     s, c = np.sin(angle), np.cos(angle)

@@ -40,7 +40,9 @@ def sections(sheet: Sheet) -> list[tuple[str, list[Row]]]:
     """All rows under their headings; headings without rows are omitted."""
     dimensions = ("Dimensions", list(_dimensions(sheet)))
     if sheet.pulled:
-        return [dimensions, ("Extension spring, EN 13906-2", list(_pulled(sheet)))]
+        endurance = list(_endurance(sheet))
+        pulled = [dimensions, ("Extension spring, EN 13906-2", list(_pulled(sheet)))]
+        return [*pulled, ("Endurance", endurance)] if endurance else pulled
     if sheet.turns_to:
         return [dimensions, ("Torsion spring, EN 13906-3", list(_turned(sheet)))]
     parts = {
@@ -106,7 +108,8 @@ def _rate(sheet: Sheet) -> Row:
     why = f"{which}, where end turns carry load too; with curvature and direct shear"
     if sheet.at_run(FINISHED) is not None:
         why = f"{which}, between 30 and 70 % of its travel"
-    formula = "4 G J/(π D³ n)" if sheet.spring.wire else "G d⁴/(8 D³ n)"
+    wire = sheet.spring.wire
+    formula = f"4 G J c/(π D³ n), c = {wire.curved:.4f} of the curved wire" if wire else "G d⁴/(8 D³ n)"
     return Row("rate R", sheet.rate, "N/mm", formula, DERIVED, found, why)
 
 
@@ -133,17 +136,30 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
     if s.wire:
         yield Row("all others", None, why="EN 13906-2 is for round wire")
         return
-    formula = "F0 + R (L − L0)" if sheet.tension else "R (L − L0)"
-    for length in sheet.lengths:
+    for length in sorted(sheet.lengths):
         force = -sheet.force(length)
         finished = sheet.found.finished_force_at(length) if sheet.found else None
         # the formula is of the spring as wound, which is that of its first pull
         pull = sheet.found.first_force_at(length) if sheet.found and finished is None else finished
         found, why = None if pull is None else abs(pull), "first pull" if finished is None else "of the finished spring"
         τ = en13906.stress(force, s.d, s.D)
-        yield Row(f"force at {length:.5g} mm", force, "N", formula, DERIVED, found, why)
+        yield Row(f"force at {length:.5g} mm", force, "N", sheet.force_formula, DERIVED, found, why)
         yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED)
         yield Row("  corrected stress τk", k * τ, "MPa", "k τ", TWO)
+        if sheet.hook_stress:
+            formula = "q 32 F a/(π d³) + 4 N/(π d²), the greatest"
+            yield Row("  bending stress of hooks", sheet.hook_stress * force, "MPa", formula, DERIVED)
+    yield from _strength(sheet, "extension springs (EN 13906-2)")
+
+
+def _strength(sheet: Sheet, springs: str) -> Iterator[Row]:
+    """Rm, and that what the standard permits of it was found in no source for these springs."""
+    if sheet.wire:
+        sure = SHORT[sheet.wire.entry.strength.sure]
+        yield Row("minimum tensile strength Rm", sheet.least_strength, "MPa", sheet.wire.name, sure)
+    elif sheet.strength is not None:
+        yield Row("tensile strength Rm", sheet.strength, "MPa", "of the material file", GIVEN)
+    yield Row("permissible stress", None, why=f"no source was found for the permitted part of Rm of {springs}")
 
 
 def _turned(sheet: Sheet) -> Iterator[Row]:
@@ -167,13 +183,13 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
     most = max(sheet.turns_to, key=abs)
     for turn in sheet.turns_to:
         torque, largest = rate * abs(turn), turn == most
-        σ, flow = en13906.bending_stress(torque, s.d), "when last passed: less where the wire yielded, more on an arbor"
+        σ, flow = sheet.bending_stress(turn), "when last passed: less where the wire yielded, more on an arbor"
         found = sheet.found.torque_at(turn * (1.0 if most > 0.0 else -1.0)) if sheet.found else None
         yield Row(f"torque at {turn:.4g}°", torque, "N mm", "R α", DERIVED, None if found is None else abs(found), flow)
         formula = "32 M/(π d³)"
         if sheet.on_point:
             yield Row("  force on the arm F", torque / sheet.on_point.lever, "N", "M/h", DERIVED)
-            σ, formula = sheet.on_point.greatest * σ, "32 F a/(π d³), where the coil is farthest from F"
+            formula = "32 F a/(π d³), where the coil is farthest from F"
         yield Row("  bending stress σ", σ, "MPa", formula, DERIVED)
         found = run("max_bending_inside_MPa") if largest else None
         found = None if found is None else abs(found)
@@ -181,17 +197,20 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
         inner = en13906.turned_diameter(s.D, s.n, turn) - s.d
         found = run("inner_diameter_min_mm") if largest and turn > 0.0 else None
         yield Row("  inner diameter", inner, "mm", "D n/(n + α/360°) − d", DERIVED, found, "also off the axis")
+    yield from _strength(sheet, "torsion springs (EN 13906-3)")
 
 
 def _spring(sheet: Sheet) -> Iterator[Row]:
     s, e = sheet.spring, sheet.elastic
     rate, solid = sheet.rate, s.solid
-    softer = pitch_compliance(s.pitch_angle, poisson_ratio(e), "held" if sheet.held else "turning")
     yield _rate(sheet)
-    held = "(½ − ν)" if sheet.held else "(1 − ν)/(2 (1 + ν))"
+    held, nu = "(½ − ν)" if sheet.held else "(1 − ν)/(2 (1 + ν))", poisson_ratio(e)
+    if s.wire:
+        held = "(3/2 − E I/(G J))" if sheet.held else "(G J/(E I) − ½)"
+        nu = e.young_modulus * s.wire.in_plane / (e.shear_modulus * s.wire.torsion) - 1.0
+    softer = pitch_compliance(s.pitch_angle, nu, "held" if sheet.held else "turning")
     formula = f"R/(1 + tan²α {held} + …), α = {degrees(s.pitch_angle):.1f}°"
-    if not s.wire:
-        yield Row("R of a rising wire", rate / softer, "N/mm", formula, DERIVED)
+    yield Row("R of a rising wire", rate / softer, "N/mm", formula, DERIVED)
     hot = en13906.is_hot_coiled(s.d)
     cold_formulas = {"closed and ground": "n_t d_max", "closed": "(n_t + 1.5) d_max"}
     formula = "(n_t − 0.3) d_max, hot coiled" if hot else cold_formulas.get(s.ends, "")
@@ -333,7 +352,7 @@ def _endurance(sheet: Sheet) -> Iterator[Row]:
         why = f"no fatigue data for {sheet.wire.name}, {sheet.surface}" if sheet.wire else "give --wire"
         yield Row("permissible stress range", None, "MPa", why=why)
         return
-    residual = sheet.found.residual if sheet.found else None
+    residual = sheet.residual
     shifted = None if residual is None else endured.stress_range(cycle.shifted(residual).lower)
     counted = {
         "preset": "the line is of preset springs, so it may count twice",
@@ -342,6 +361,7 @@ def _endurance(sheet: Sheet) -> Iterator[Row]:
     }
     why = "" if residual is None else f"with the residual {residual:.1f} MPa; {counted[endured.springs]}"
     formula = f"Goodman, {endured.times} times, {endured.surface}, {endured.tested}"
+    formula += ", compression springs; without the hooks" if sheet.pulled else ""
     yield Row("permissible stress range", endured.stress_range(cycle.lower), "MPa", formula, ONE, shifted, why)
 
 
@@ -355,7 +375,7 @@ def _tolerances(sheet: Sheet) -> Iterator[Row]:
     yield Row("mean diameter ±", found.coil_diameter, "mm", "table", TWO)
     yield Row("free length ±", found.free_length, "mm", "a_F k_f Q/R", TWO)
     for length in sorted(sheet.lengths, reverse=True):
-        spread = en15800.force_tolerance(grade, s.d, s.D, s.n, sheet.force(length))
+        spread = en15800.force_tolerance(grade, s.d, s.D, s.n, sheet.stated_force(length))
         yield Row(f"force at {length:.5g} mm ±", spread, "N", "(a_F k_f + 0.015 F) Q", TWO)
     yield Row("lean e1", found.lean, "mm", f"{en15800.LEAN[grade]:g} L0", ONE)
     if s.ends == "closed and ground":

@@ -6,7 +6,7 @@ from math import degrees
 
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case import Case
-from coilset.model.case.phases import Phase, heads_of
+from coilset.model.case.phases import Phase
 from coilset.model.standards import en13906, en15800, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.from_results import Found
@@ -14,7 +14,6 @@ from coilset.model.standards.rate import OnPoint
 from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import Wire
 
-AT_REST = 1e-9  # of the free length: a target that does not load the spring along its axis
 AT_BLOCK = 0.01  # of the wire diameter: a run closer than this to the block length of the geometry reached block
 
 
@@ -39,6 +38,7 @@ class Sheet:
         turns_to: rotations that the load program goes to, degrees, positive in the winding direction, see EN 13906-3.
         tension: initial tension F0 of coils wound onto each other, N.
         beyond: compliance of hooks, mm/N, or of arms, rad/(N mm).
+        hook_stress: greatest stress along the wire of the hooks for 1 N, MPa; 0 without hooks.
         on_point: of a torsion spring with an arm on a point; None of others.
     """
 
@@ -58,6 +58,7 @@ class Sheet:
     turns_to: Sequence[float] = ()
     tension: float = 0.0
     beyond: float = 0.0
+    hook_stress: float = 0.0
     on_point: OnPoint | None = None
 
     @property
@@ -78,14 +79,21 @@ class Sheet:
         body = en13906.turn_rate(self.elastic.young_modulus, self.spring.d, self.spring.D, self.spring.n)
         return 1.0 / (1.0 / body + degrees(self.beyond))
 
+    def bending_stress(self, turn: float) -> float:
+        """Nominal bending stress of a torsion spring at a rotation, degrees, where it is greatest, MPa."""
+        σ = en13906.bending_stress(self.turn_rate * abs(turn), self.spring.d)
+        return self.on_point.greatest * σ if self.on_point else σ
+
     def force(self, length: float) -> float:
         """Nominal force at a length, N: R (L0 − L), or that of coils of variable pitch, which close one by one.
 
-        Of a spring that is pulled it is negative, −F0 − R (L − L0) with the hooks' share in R.
+        Pulled it is negative: up to F0 hooks alone give way, by c F; beyond, L − L0 = c F + (F − F0)/R.
         """
         travel = self.spring.length - length
         if self.pulled:
-            return self.pull_rate * travel - self.tension
+            if self.beyond and -travel < self.beyond * self.tension:
+                return travel / self.beyond
+            return (travel - self.tension / self.rate) * self.pull_rate
         if not self.spring.pitches:
             return self.rate * travel
         return self.spring.series_force(travel, self.rate * self.spring.n)
@@ -93,12 +101,21 @@ class Sheet:
     def length(self, force: float) -> float:
         """Nominal length under a force, mm, by the rate."""
         if self.pulled:
-            return self.spring.length - (force + self.tension) / self.pull_rate
+            return self.spring.length - self.beyond * force - min(force + self.tension, 0.0) / self.rate
         return self.spring.length - force / self.rate
+
+    def stated_force(self, length: float) -> float:
+        """Force at a length that a drawing states, N: that of the run, else the nominal one."""
+        found = self.found.force_at(length) if self.found else None
+        return self.force(length) if found is None else found
 
     @property
     def force_formula(self) -> str:
         """How `force` is found, in symbols."""
+        if self.pulled and self.tension:
+            return "L − L0 = c F + (F − F0)/R, c of hooks" if self.beyond else "F0 + R (L − L0)"
+        if self.pulled:
+            return "R (L − L0)"
         return "s = ∫ min(F/R₁, p − d) dt" if self.spring.pitches else "R (L0 − L)"
 
     def stress(self, length: float) -> float:
@@ -134,11 +151,21 @@ class Sheet:
 
     @property
     def cycle(self) -> goodman.Cycle | None:
-        """Corrected stresses at the longest and the shortest working length; None with fewer than two."""
+        """Least and greatest corrected stress at the working lengths, pulled or pressed; None with fewer than two."""
         if len(self.lengths) < 2:
             return None
-        k = self.spring.correction
-        return goodman.Cycle(k * self.stress(max(self.lengths)), k * self.stress(min(self.lengths)))
+        stresses = [self.spring.correction * abs(self.stress(length)) for length in self.lengths]
+        return goodman.Cycle(min(stresses), max(stresses))
+
+    @property
+    def residual(self) -> float | None:
+        """Residual stress of the run that shifts the cycle, MPa; that of coils wound onto each other is their F0."""
+        return self.found.residual if self.found and not self.pulled else None
+
+    @property
+    def least_strength(self) -> float | None:
+        """Rm of the standard wire, or of the material's file, MPa; None if neither is known."""
+        return self.wire.strength(self.spring.d) if self.wire else self.strength
 
     @property
     def endured(self) -> goodman.Line | None:
@@ -156,31 +183,6 @@ class Sheet:
     def at_run(self, name: str) -> float | None:
         """An entry of the run's summary; None without a run, or if the run did not get that far."""
         return self.found.get(name) if self.found else None
-
-
-def _loads(case: Case, spring: Spring) -> list[float]:
-    """Travels, mm, and forces, N, that a load program goes to; compression is positive."""
-    goals = (phase.goal(spring.free_length, spring.block_height) for phase in case.targets)
-    return [spring.free_length - value if kind == "height" else value for kind, value in goals]
-
-
-def pulls(case: Case, spring: Spring) -> bool:
-    """Whether a load program pulls the spring and never compresses it."""
-    loads = _loads(case, spring)
-    return min(loads, default=0.0) < 0.0 and max(loads) <= 0.0
-
-
-def rotations(case: Case, spring: Spring) -> tuple[float, ...]:
-    """Rotations that a load program goes to, degrees, positive in the winding direction; none of one with a travel."""
-    if any(abs(load) > AT_REST * spring.free_length for load in _loads(case, spring)):
-        return ()
-    found: list[float] = []
-    for phase in case.loading:
-        for end, target in heads_of(phase).items():
-            if isinstance(target.turn, float) and target.turn:
-                turn = spring.hand * target.turn * (1.0 if end == "top" else -1.0)
-                found += [] if turn in found else [turn]
-    return tuple(found)
 
 
 def pulled_lengths(case: Case, spring: Spring) -> list[float]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.standards import en13906
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.rate import WireNumbers, torsion_rate
 from coilset.model.standards.wires.steel import STEEL, Elastic
@@ -64,8 +65,12 @@ def _rate(spring: Spring, material: Elastic, is_pulled: bool) -> Row:
         rate = np.radians(material.young_modulus * second / spring.wire_length)
         return "rate E I/l, EN 13906-3 with the arms' wire", f"{rate:.5g}", "N mm/°"
     is_cylinder = all(np.ptp(values) < SAME * values.max() for values in (d, D))  # to which EN 13906-1 applies
+    if spring.section is not None and is_cylinder:
+        of_rate = WireNumbers.of(spring.section, float(d.mean()), float(D.mean())).of_rate
+        rate = en13906.rate(material.shear_modulus, of_rate, float(D.mean()), spring.active_turns)
+        return "rate 4 G J c/(π D³ n)", f"{rate:.5g}", "N/mm"
     if spring.section is not None:
-        formula = "rate 4 G J/(π D³ n)" if is_cylinder else "rate by torsion, G/(2 π ∫ r³/J dn)"
+        formula = "rate by torsion, G/(2 π ∫ r³/J dn)"
     elif is_cylinder:
         formula = f"rate G d⁴/(8 D³ n), EN {'13906-2, of the body' if is_pulled else '13906-1'}"
     else:

@@ -17,10 +17,17 @@ TIP_LEAST = 0.25  # of the wire diameter
 OFFSET_USUAL, TILT_USUAL = 0.1, 0.5  # of the wire diameter, and degrees: beyond, a scan was not set up on its axis
 
 
-def spring_warnings(spring: Spring, elastic: Elastic = STEEL) -> list[Warning]:
-    """All warnings about the unloaded spring itself; the travel to buckling depends on its material's G/E."""
+def spring_warnings(spring: Spring, elastic: Elastic = STEEL, pressed: bool = True) -> list[Warning]:
+    """All warnings about the unloaded spring itself.
+
+    Args:
+        spring: the spring.
+        elastic: moduli of its material, on whose ratio the travel to buckling depends.
+        pressed: whether it is a compression spring: others do not buckle.
+    """
     checks = (_wire, _index, _solid_coils, _active, _ground, _axis)
-    return [*(warning for check in checks for warning in check(spring)), *_buckling(spring, elastic)]
+    found = [warning for check in checks for warning in check(spring)]
+    return [*found, *_buckling(spring, elastic)] if pressed else found
 
 
 def _wire(spring: Spring) -> Iterator[Warning]:

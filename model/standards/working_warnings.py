@@ -1,6 +1,7 @@
 """Warnings of a spring maker about working lengths and presetting; see `spring_warnings` for the spring."""
 
 from collections.abc import Sequence
+from math import sqrt
 from typing import TYPE_CHECKING
 
 from coilset.model.base.warning import Warning
@@ -62,6 +63,37 @@ def stress_warnings(made: "Sheet", lengths: Sequence[float], wire: Wire) -> list
                 )
             )
     return found
+
+
+def strength_warnings(made: "Sheet") -> list[Warning]:
+    """Loads under which an extension or torsion spring would have more than its strength by the elastic formulas.
+
+    Nominal bending above Rm, and nominal shear above Rm/√3 (von Mises). How much less the standards permit was found in
+    no source.
+    """
+    strength, spring = made.least_strength, made.spring
+    if strength is None or spring.wire:
+        return []
+    shear = ("Rm/√3", strength / sqrt(3.0))
+    found: list[tuple[str, str, float, tuple[str, float]]] = []
+    for length in made.lengths if made.pulled else ():
+        force, where = abs(made.force(length)), f"at {length:.4g} mm"
+        found.append((where, "shear stress of the coils", en13906.stress(force, spring.d, spring.D), shear))
+        found.append((where, "bending stress of the hooks", made.hook_stress * force, ("Rm", strength)))
+    for turn in made.turns_to:
+        found.append((f"at {turn:.4g}°", "bending stress", made.bending_stress(turn), ("Rm", strength)))
+    return [
+        Warning(
+            "strength",
+            "loading",
+            f"{where} the {name} by the elastic formula is {stress:.4g} MPa, above {symbol} = {limit:.4g} MPa",
+            stress,
+            limit,
+            "MPa",
+        )
+        for where, name, stress, (symbol, limit) in found
+        if stress > limit
+    ]
 
 
 def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:

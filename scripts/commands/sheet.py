@@ -13,6 +13,7 @@ from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError, naming
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case, read_case
+from coilset.model.case.loading import is_pressed
 from coilset.model.figures.panels.goodman import goodman as diagram_of
 from coilset.model.figures.png import write_png
 from coilset.model.report.document.words import Language, Words
@@ -98,7 +99,7 @@ def sheet(case_file: str | Path | None, options: Options) -> None:
             console.say(f"sheet in {file}")
     if diagram is not None:
         make(folder)
-        write_png(folder / FIGURE, [diagram_of(*diagram, run.residual if run else None)])
+        write_png(folder / FIGURE, [diagram_of(*diagram, made.residual)])
         console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 
 
@@ -207,7 +208,8 @@ def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
 def _warnings(case: Case, spring: Spring, made: Sheet) -> list[Warning]:
     cylinder = made.spring
     warm = warm_warnings(case, case_law(case, spring), made.wire.name if made.wire else None)
-    warnings = [*warm, *spring_warnings(spring, made.elastic), *sheet_warnings(made, [cylinder.solid])]
+    own = spring_warnings(spring, made.elastic, is_pressed(case, spring))
+    warnings = [*warm, *own, *sheet_warnings(made, [cylinder.solid])]
     set_mm = made.at_run("set_mm")
     if set_mm and made.was_at_block and not (made.pulled or made.turns_to):  # any other run is no presetting
         warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])

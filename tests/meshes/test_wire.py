@@ -5,7 +5,9 @@ import pytest
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
+from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.rows import sections
 from coilset.model.standards.spring_data import spring_data
 
 OVAL = {"oval": {"width": 4.0, "height": 5.0}}
@@ -72,16 +74,35 @@ def test_outer_diameter_counts_the_width():
 
 
 def test_numbers_of_a_round_ellipse_are_those_of_round_wire():
-    """J, W, A, and Göhner's factor, which Bergsträsser's meets within 0.5 % at D/d = 6.4."""
+    """J, W, A, and Göhner's factor, which Bergsträsser's meets within 0.5 % at D/d = 6.4.
+
+    The coil's rate over that of the straight wire is 1/(1 − 3/(16 w²)) but for terms in 1/w⁴ (Ancker and Goodier).
+    """
     made = Cylinder.of(case({"oval": {"width": 5.0, "height": 5.0}}).spring.build())
-    assert (made.of_rate, made.of_stress, made.of_mass) == pytest.approx((5.0, 5.0, 5.0), rel=1e-7)
+    assert made.wire.torsion == pytest.approx(np.pi * 5.0**4 / 32.0, rel=1e-7)
+    assert (made.of_stress, made.of_mass) == pytest.approx((5.0, 5.0), rel=1e-7)
+    assert made.wire.curved == pytest.approx(1.0 / (1.0 - 3.0 / (16.0 * 6.4**2)), abs=2e-4)
+    assert made.of_rate == pytest.approx(5.0 * made.wire.curved**0.25)
     assert made.correction == pytest.approx((6.4 + 0.5) / (6.4 - 0.75), rel=5e-3)
 
 
 def test_data_name_the_formula_of_the_rate():
     """That of round wire stands for no rectangle."""
     names = [label for label, *_ in spring_data(case(RECTANGLE).spring.build())]
-    assert "rate 4 G J/(π D³ n)" in names
+    assert "rate 4 G J c/(π D³ n)" in names
+
+
+@pytest.mark.parametrize(("mean", "rate"), [(20.0, 63.55), (30.0, 18.12), (40.0, 7.539)])
+def test_rate_of_flat_wire_in_a_coil(mean, rate):
+    """5 × 3, of `coilset slice` of the same coil, held ends: by J alone the rate was 6.8, 3.1 and 1.8 % lower."""
+    wire = {"rectangle": {"width": 5.0, "height": 3.0, "corner": 0.4}}
+    flat = case(wire, mean_diameter=mean, turns=6, pitch=8.18182)
+    made = case_sheet(flat, flat.spring.build(), None, "EN 10270-2 VDSiCr")
+    shown = {row.label: row.value for _, part in sections(made) for row in part}
+    assert shown["R of a rising wire"] == pytest.approx(rate, rel=2e-3)
+    assert ("rate 4 G J c/(π D³ n)", f"{shown['rate R']:.5g}", "N/mm") in list(
+        spring_data(flat.spring.build(), made.elastic)
+    )
 
 
 def test_section_modulus_of_a_rectangle():

@@ -11,7 +11,7 @@ import xarray as xr
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.standards import from_results, goodman
+from coilset.model.standards import en15800, from_results, goodman
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.cylinder import Cylinder
@@ -119,6 +119,9 @@ def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
     assert shown["free length L0"].found == 100.0
     assert shown["force at 67.5 mm"].found == pytest.approx(700 - 350 * 7.5 / 20)
     assert shown["force at 67.5 mm"].why == "after setting R (L0 − L) is 525.9 N"
+    # of the finished spring's force, as on the drawing; it was that of the spring as wound
+    spread = en15800.force_tolerance(2, 5.0, 34.6, 9.5, 568.75)
+    assert shown["force at 67.5 mm ±"].value == pytest.approx(spread)
     assert shown["wire length l"].found == 1260.0
     assert shown["force at block Fc"].found is None  # it was not pressed to block
     assert shown["growth of D to block"].found is None

@@ -223,8 +223,7 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
     free_text = about(free, "free_length_after_mm", given.free_length if given else None)
     levels, loads = [Level(sheet.spring.length if sheet.pulled else free, f"L0 = {free_text}", spring.levels[0])], []
     for k, length in enumerate(sorted(sheet.lengths, reverse=not sheet.pulled)[: MOST_LEVELS - 1], 1):
-        force = sheet.found.force_at(length) if sheet.found else None
-        force = sheet.force(length) if force is None else force
+        force = sheet.stated_force(length)
         spread = en15800.force_tolerance(sheet.grade, s.d, s.D, s.n, force) if covered else None
         text = about(abs(force) if sheet.pulled else force, number_name("force", length), spread)
         loads.append(Level(length, f"L{k} = {number(length)}   F{k} = {text} N"))

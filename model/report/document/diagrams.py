@@ -24,8 +24,7 @@ def diagrams(sheet: Sheet, limits: Mapping[str, Limit]) -> Iterator[Panel]:
         return
     yield _force(sheet, limits)
     if sheet.wire and sheet.endured and sheet.cycle:
-        residual = sheet.found.residual if sheet.found else None
-        made = goodman(f"{sheet.wire.name}", sheet.endured, sheet.cycle, residual)
+        made = goodman(f"{sheet.wire.name}", sheet.endured, sheet.cycle, sheet.residual)
         yield replace(made, title="Goodman diagram")
 
 

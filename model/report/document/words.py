@@ -80,6 +80,8 @@ GERMAN = {
     "lever of its force F": "Hebelarm seiner Kraft F",
     "force on the arm F": "Kraft am Schenkel F",
     "stress factor q": "Spannungsbeiwert q",
+    "bending stress of hooks": "Biegespannung der Ösen",
+    "permissible stress": "zulässige Spannung",
     "torque at {}°": "Moment bei {}°",
     "bending stress σ": "Biegespannung σ",
     "at the inside σq": "an der Innenseite σq",

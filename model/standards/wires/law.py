@@ -3,6 +3,7 @@
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.case import Case
+from coilset.model.case.loading import is_pressed
 from coilset.model.case.targets import check_known
 from coilset.model.material import library
 from coilset.model.material.law.file import MaterialFile
@@ -156,8 +157,11 @@ def case_strength(case: Case, spring: Spring) -> float | None:
 
 
 def case_allowed(case: Case, spring: Spring) -> tuple[float | None, str]:
-    """Shear stress allowed at block for a case's wire, MPa, and which stress it limits; None without such a wire."""
-    if isinstance(case.material, str):
+    """Shear stress allowed at block for a case's wire, MPa, and which stress it limits.
+
+    None without such a wire, and of a spring that is no compression spring.
+    """
+    if isinstance(case.material, str) or not is_pressed(case, spring):
         return None, ""
     known = wire(case.material.wire)
     return known.block_stress(wire_diameter(spring)), known.entry.block_stress.of

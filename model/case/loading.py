@@ -1,0 +1,37 @@
+"""What a load program does to its spring: presses, pulls or turns it."""
+
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.case.case import Case
+from coilset.model.case.phases import heads_of
+
+AT_REST = 1e-9  # of the free length: a target that does not load the spring along its axis
+
+
+def _loads(case: Case, spring: Spring) -> list[float]:
+    """Travels, mm, and forces, N, that a load program goes to; compression is positive."""
+    goals = (phase.goal(spring.free_length, spring.block_height) for phase in case.targets)
+    return [spring.free_length - value if kind == "height" else value for kind, value in goals]
+
+
+def pulls(case: Case, spring: Spring) -> bool:
+    """Whether a load program pulls the spring and never compresses it."""
+    loads = _loads(case, spring)
+    return min(loads, default=0.0) < 0.0 and max(loads) <= 0.0
+
+
+def is_pressed(case: Case, spring: Spring) -> bool:
+    """Whether it is a compression spring: without hooks or arms, and neither pulled nor turned by its load program."""
+    return not (spring.has_tails or pulls(case, spring) or rotations(case, spring))
+
+
+def rotations(case: Case, spring: Spring) -> tuple[float, ...]:
+    """Rotations that a load program goes to, degrees, positive in the winding direction; none of one with a travel."""
+    if any(abs(load) > AT_REST * spring.free_length for load in _loads(case, spring)):
+        return ()
+    found: list[float] = []
+    for phase in case.loading:
+        for end, target in heads_of(phase).items():
+            if isinstance(target.turn, float) and target.turn:
+                turn = spring.hand * target.turn * (1.0 if end == "top" else -1.0)
+                found += [] if turn in found else [turn]
+    return tuple(found)
