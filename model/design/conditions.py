@@ -130,7 +130,28 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
         found += _conditions(name, at.N, at.height, _phase(program, at.height))
     if data.get("ends", "seats") == "seats":
         _refuse_tension(found)
+    elif _only_pulls(base):
+        _refuse_compression(found)
     return found, data
+
+
+def _only_pulls(data: Mapping[str, Any]) -> bool:
+    """Whether the spring of raw data has hooks, or is pulled by its whole load program."""
+    if data["spring"].get("hooks"):
+        return True
+    targets = [phase["to"] for phase in data["loading"] if "to" in phase]
+    values = [to.get("force", to.get("travel")) if isinstance(to, dict) else None for to in targets]
+    numbers = [value for value in values if value is not None]
+    return len(numbers) == len(targets) and min(numbers, default=0.0) < 0.0 and max(numbers) <= 0.0
+
+
+def _refuse_compression(found: Iterable[Condition]) -> None:
+    """Refuse forces above 0 of a spring that is pulled, which no search would meet."""
+    for one in found:
+        is_force = one.height is not None or one.short_name.startswith("force_at_") or one.short_name == "force_max_N"
+        if is_force and one.target > 0.0:
+            problem = f"is {one.target:g}; must be below 0 of a spring that is pulled, as its forces are negative"
+            raise InputError(f"{problem}; give {-one.target:g}", one.name)
 
 
 def _refuse_tension(found: Iterable[Condition]) -> None:

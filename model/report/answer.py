@@ -186,7 +186,8 @@ WORKING_HEADS = (
 """Columns of `working_rows`."""
 WORKING_NOTE = (
     "τ = 8 D F/(π d³) and τk after EN 13906-1; the true shear stress at the inside of the coil includes the residual "
-    "stress. Safety is the stress allowed for the wire at block over τ or τk, whichever it limits."
+    "stress. Safety of a compression spring is the stress allowed for the wire at block over τ or τk, whichever it "
+    "limits."
 )
 LIMIT_HEADS = ("result", "value", "from", "to", "", "by", "source")
 FATIGUE_HEADS = ("criterion", "amplitude, MPa", "endured, MPa", "safety", "at turn", "angle", "lives, 10, 50, 90 %")

@@ -17,7 +17,7 @@ from coilset.model.sweep.figures import findings
 from coilset.model.sweep.figures.capability import capabilities
 from coilset.model.sweep.figures.limits import histogram
 from coilset.model.sweep.figures.sensitivity import rank_correlation
-from coilset.model.sweep.multifidelity import QUANTILES, of_response
+from coilset.model.sweep.multifidelity import QUANTILES, as_rods, of_response
 
 FILE = "sweep.nc"
 SHOWN = ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_inside_MPa", "status", "warnings")  # at first
@@ -41,15 +41,17 @@ def write_sweep_report(folder: str | Path) -> Path:
     with reading(folder / FILE):
         data = labelled(folder)
         of = next((name for name in ANSWERS if name in data and data[name].notnull().any()), "seconds")
-        columns = _columns(data, of)
+        shown = as_rods(data)
+        columns = _columns(shown, of)
     capable = capabilities(data)
-    panels = [panel for panel in (_deciding(data, of), _spread(data, of)) if panel is not None]
+    panels = [panel for panel in (_deciding(shown, of), _spread(shown, of)) if panel is not None]
     counts = {status: int((data["status"] == status).sum()) for status in ("done", "failed", "missing")}
     names = [data[name].attrs["long_name"] for name in _list(data.attrs["inputs"])]
     cases, sample = f"{data.attrs.get('cases', data.sizes['case']):,} cases", ""
     if data.sizes["case"] < data.attrs.get("cases", 0):
         sample = f"A sample of {data.sizes['case']:,} of the {cases}, evenly spread over the plan"
     uniform = "; uniform rods, without ends and contacts" if data.attrs.get("model") == "uniform_rod" else ""
+    uniform += ", corrected by the rods among them" if any(str(name).startswith("rod_") for name in data) else ""
     return write_page(
         folder,
         "sweep",
@@ -64,12 +66,12 @@ def write_sweep_report(folder: str | Path) -> Path:
                 f"{counts['done']} done",
                 f"{counts['failed']} failed, {counts['missing']} missing",
             ),
-            *(_range(data, name) for name in ANSWERS if name in data),
+            *(_range(data, shown[name]) for name in ANSWERS if name in data),
         ],
         warnings=_warnings(data),
         capable=[one.row | {"advice": one.advice} for one in capable],
         by=capable[0].by if capable else "",
-        finding=findings.extent(data, of),
+        finding=findings.extent(shown, of),
         made_with="; ".join(filter(None, (data.attrs["title"], data.attrs.get("versions", "")))),
     )
 
@@ -141,8 +143,9 @@ def _inputs(data: xr.Dataset) -> list[str]:
     return [name for name in _list(data.attrs["inputs"]) if data[name].dtype.kind == "f"]
 
 
-def _range(data: xr.Dataset, name: str) -> Number:
-    values, unit = data[name], data[name].attrs["units"]
+def _range(data: xr.Dataset, values: xr.DataArray) -> Number:
+    """Of a response, as it is shown."""
+    name, unit = str(values.name), values.attrs["units"]
     if not bool(values.notnull().any()):
         return Number(values.attrs["long_name"], "not reached")
     low, mean, high = (findings.number(value) for value in (values.min(), values.mean(), values.max()))

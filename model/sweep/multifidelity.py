@@ -61,9 +61,14 @@ class ControlVariate:
         if len(rod) < FEWEST:
             raise ValueError(f"{len(rod)} rods are too few for an interval; {FEWEST} are needed")
         self.rod, self.uniform = rod, len(all_uniform)
-        beta = slope(rod, uniform)
-        self._predicted = rod.mean() + beta * (uniform - uniform.mean())
-        self._all_predicted = np.sort(rod.mean() + beta * (all_uniform - uniform.mean()))
+        self._line = slope(rod, uniform), float(uniform.mean()), float(rod.mean())
+        self._predicted = self.predicted(uniform)
+        self._all_predicted = np.sort(self.predicted(all_uniform))
+
+    def predicted(self, uniform: np.ndarray) -> np.ndarray:
+        """What the regression of rods on uniform rods makes of these, in their shape."""
+        beta, uniform_mean, rod_mean = self._line
+        return rod_mean + beta * (uniform - uniform_mean)
 
     def mean(self) -> Statistic:
         """Of the response."""
@@ -124,6 +129,28 @@ def of_response(data: "xr.Dataset", name: str) -> ControlVariate:
     rod = data[f"rod_{name}"].values
     both = known & np.isfinite(rod)
     return ControlVariate(rod[both], uniform[both], uniform[known])
+
+
+def as_rods(data: "xr.Dataset") -> "xr.Dataset":
+    """The data set of a sweep as its tables and figures show it, so that they agree with the estimates for rods.
+
+    Of uniform rods each response is what the regression on the rods among them makes of it; where there are no or too
+    few rods, it is named as that of the uniform rod.
+    """
+    if data.attrs.get("model") != "uniform_rod":
+        return data
+    shown = data.copy()
+    for name, values in data.data_vars.items():
+        if values.dims != ("case",) or values.dtype.kind != "f" or "long_name" not in values.attrs:
+            continue
+        if str(name).startswith("rod_"):
+            continue
+        try:
+            of_rods = of_response(data, str(name)).predicted(values.values)
+            shown[name] = values.copy(data=of_rods)
+        except ValueError:
+            shown[name] = values.assign_attrs(long_name=f"{values.attrs['long_name']} of the uniform rod")
+    return shown
 
 
 def of_parquet(path: str | Path, name: str) -> ControlVariate:

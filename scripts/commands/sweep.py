@@ -206,7 +206,8 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     dataset.write(out / "sweep.nc", data)
     if data.sizes["case"] < len(plan):
         console.say(f"sweep.nc and figures show {data.sizes['case']} of {len(plan)} cases; sweep.parquet has all")
-    files, problems = draw(out, plan, data) if options.pictures else ([], [])
+    shown = multifidelity.as_rods(data)
+    files, problems = draw(out, plan, shown) if options.pictures else ([], [])
     for line in multifidelity.lines(plan, partial(multifidelity.of_response, data)) if of_rods is None else of_rods:
         console.print(line)
     capable = capability.capabilities(data)
@@ -218,8 +219,8 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     turned = "turn_set_deg" in data and data["turn_set_deg"].notnull().any()
     for name in OF_TURNED if turned else OF_PRESSED:
         if name in data and data[name].notnull().any():
-            words, unit = dataset.quantity(name)
-            values = data[name]
+            values = shown[name]
+            words, unit = values.attrs["long_name"], values.attrs["units"]
             numbers = (f"{float(value):.5g}" for value in (values.min(), values.mean(), values.max()))
             extents.add_row(f"{words}, {unit}", *numbers)
     console.print(extents)

@@ -39,6 +39,32 @@ def test_what_is_wrong_is_said_in_one_line(design_file, find, such_that, problem
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("such_that", "place"),
+    [
+        ({"working": {"force_at_90_N": 35.0}}, "working.force_at_90_N"),
+        ({"working": {"force_at_90_N": {"at_least": 35.0}}}, "working.force_at_90_N.at_least"),
+        ({"force_at": {"height": 90.0, "N": 35.0}}, "force_at"),
+        ({"force_max_N": 35.0}, "force_max_N"),
+    ],
+)
+@pytest.mark.parametrize("hooks", [True, False])
+def test_a_force_of_the_wrong_sign_of_a_pulled_spring_is_refused(tmp_path, such_that, place, hooks):
+    """No spring has it: a search for one went on for five minutes."""
+    spring = {"wire_diameter": 1.2, "outer_diameter": 12.0, "turns": 18, "initial_tension": 8.0}
+    spring |= {"hooks": {"bottom": {"shape": "german"}, "top": {"shape": "german"}}} if hooks else {}
+    loading = [{"to": {"force": -35.0}}, {"to": {"force": 0}}]
+    entries = {"spring": spring, "material": "elastic", "ends": "clamped", "loading": loading}
+    path = tmp_path / "design.yaml"
+    path.write_text(yaml.safe_dump(entries | {"find": {"spring.turns": [12, 30]}, "such_that": such_that}))
+    with pytest.raises(InputError) as caught:
+        make_search(read_design_file(path))
+    assert f"such_that.{place}: is 35; must be below 0 of a spring that is pulled" in str(caught.value)
+    assert str(caught.value).endswith("give -35")
+    path.write_text(path.read_text().replace("35.0", "-35.0").replace("--", "-"))
+    make_search(read_design_file(path))
+
+
 def test_what_no_spring_between_the_bounds_can_be_is_refused_before_one_is_run(design_file):
     """A word as an unknown, and a height below block, 12.5 mm and 17.5 mm of these, are called by their own entries."""
     with pytest.raises(InputError, match=r"^find\.spring\.hand: 9\.0: must be 'right' or 'left'$"):

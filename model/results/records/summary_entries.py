@@ -177,7 +177,8 @@ class Summary:
         "the finished spring at each length or force of the case's `working`: `length_mm`, `force_N`, its "
         "`estimated_error` by all causes, the nominal `shear_MPa` and `corrected_shear_MPa` of EN 13906-1, the true "
         "maximum `shear_inside_MPa` and `shear_surface_MPa` of the middle turns with their places, `allowed_MPa` and "
-        "`safety` for a wire of a standard, force centres; or the `reason` why the spring cannot be there",
+        "`safety` for a wire of a standard in a compression spring, force centres; or the `reason` why the spring "
+        "cannot be there",
     )
     working_set_mm: float | None = entry(
         "mm", "further set by going to the working lengths once; 0 of a spring that stays elastic"
