@@ -9,8 +9,8 @@ import pyvista.plotting
 
 from coilset.model.base.style import DIVERGING, SEQUENTIAL, colour_bar, round_end
 from coilset.model.figures.wire_surface import Frames, closed, loading_stress, tubes
-from coilset.model.results.files.folder import whole
 from coilset.model.results.files.opened import Run
+from coilset.model.results.files.png_file import write
 from coilset.model.results.records.labels import plain
 
 RINGS_PER_ELEMENT = 4
@@ -96,6 +96,7 @@ def springs(path: str | Path, run: Run) -> None:
             clim=(-end if signed else 0.0, end),
             cmap=DIVERGING if signed else SEQUENTIAL,
             smooth_shading=True,
+            split_sharp_edges=True,  # or the cut ends look like balls
             scalar_bar_args=bar,
         )
         foot = [aside + place * view.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / view.scale)]
@@ -114,8 +115,8 @@ def springs(path: str | Path, run: Run) -> None:
     plotter.camera.parallel_projection = True
     plotter.camera.parallel_scale = 0.5 * view.height / view.scale
     try:
-        with whole(path) as partial:
-            plotter.screenshot(str(partial))
+        pixels = plotter.screenshot(return_img=True)
+        write(path, pixels, "; ".join(label.replace("\n", ": ") for label in shown.labels))
     finally:
         plotter.close()
 

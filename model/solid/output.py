@@ -10,8 +10,8 @@ import pyvista
 
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.style import QUARTERED, colour_bar, round_end
-from coilset.model.results.files.folder import whole
 from coilset.model.results.files.grid_file import write_grid
+from coilset.model.results.files.png_file import write
 from coilset.model.solid.continuum import mises
 from coilset.model.solid.solid import Solid
 
@@ -97,6 +97,5 @@ def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str,
         plotter.camera.parallel_projection = True
         plotter.view_vector((0.1, -1.0, 0.6), viewup=(0, 0, 1))
         plotter.camera.zoom(1.6)
-    with whole(Path(path)) as part:
-        plotter.screenshot(str(part))
+    write(path, plotter.screenshot(return_img=True), "; ".join(bodies))
     plotter.close()

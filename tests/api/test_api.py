@@ -1,12 +1,14 @@
 """The stable interface: every example of its docstrings, and what it refuses."""
 
 import doctest
+import pickle
 from contextlib import closing
 
 import pytest
 
 import coilset.api
-from coilset.api import Case, InputError, Result, SolveError, material
+from coilset.api import Case, InputError, Result, SolveError, material, solve
+from coilset.model.results.files.labelled import labelled
 
 
 def once(function):
@@ -28,6 +30,17 @@ def test_every_example_runs(monkeypatch, example):
     found = doctest.testmod(coilset.api, globs=names, optionflags=doctest.ELLIPSIS)
     assert found.attempted > 25
     assert found.failed == 0
+
+
+PRESSED = Case(
+    {
+        "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
+        "material": "ck15",
+        "accuracy": "none",
+        "mesh": {"elements_per_turn": 8, "section": {"radial": 2, "angular": 6}},
+        "loading": [{"to": {"travel": 5}, "steps": 2}],
+    }
+)
 
 
 def test_every_public_name_has_an_example():
@@ -95,6 +108,21 @@ def test_a_run_without_an_equilibrium_has_its_results_up_to_there():
     result = found.value.result
     assert not result.summary["complete"]
     assert result.travel[:2] == pytest.approx([1.5, 3.0])
+
+
+def test_arrays_are_read_when_they_are_used(monkeypatch):
+    """They are most of what a long wire's results take; a copy in another process has them although no file is left."""
+    read = []
+    monkeypatch.setattr(coilset.api, "labelled", lambda folder: read.append(folder) or labelled(folder))
+    result = solve(PRESSED)
+    assert result.set is None
+    assert read == []
+    copied = pickle.loads(pickle.dumps(result))
+    folder = result.folder
+    del result
+    assert not folder.exists()
+    assert copied.travel[-1] == pytest.approx(5.0)
+    assert read == [folder]
 
 
 def test_a_folder_without_results_is_refused(tmp_path):

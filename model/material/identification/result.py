@@ -95,11 +95,7 @@ class Fit:
             "description": "Constants identified from tests",
             "source": "coilset material fit: " + ", ".join(test.name for test in self.tests),
             "units": "N, mm, K",
-            "validity": {
-                "plastic_work": float(f"{self.work:.3g}"),
-                "remark": " ".join([remark, *self.tester]),
-                "undetermined": list(self.doubtful),
-            },
+            "validity": {"plastic_work": float(f"{self.work:.3g}"), "remark": " ".join([remark, *self.tester])},
             "temperatures": [at],
         }
 

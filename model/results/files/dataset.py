@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.results.fatigue import usage
-from coilset.model.results.files.netcdf import Variable, write_netcdf
+from coilset.model.results.files.netcdf import Stack, Variable, write_netcdf
 from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.results.records.warnings import run_warnings
@@ -46,8 +46,8 @@ def point_state(setup: Setup, result: Result) -> Variables:
     of_points = ("element", "gauss", "point")
     of_sections = ("snapshot", "element", "gauss")
 
-    def shots(name: str) -> np.ndarray:
-        return np.stack([getattr(shot, name) for shot in snapshots])
+    def shots(name: str) -> Stack:
+        return Stack([getattr(shot, name) for shot in snapshots])
 
     mm, curvature = {"units": "mm"}, {"units": "1/mm", "about": "towards y"}
     surface = {"units": "MPa", "about": "points on the wire's surface; the angle is counted from y to z"}
@@ -57,8 +57,8 @@ def point_state(setup: Setup, result: Result) -> Variables:
         "surface": Variable((*of_sections, "angle", "component"), shots("surface_state"), surface),
         "resultants": Variable((*of_sections, "resultant"), shots("resultants"), resultants),
         "position": Variable(("snapshot", "station", "axis"), shots("x"), mm),
-        "height": Variable(("snapshot",), shots("height"), mm),
-        "force": Variable(("snapshot",), shots("force"), {"units": "N"}),
+        "height": Variable(("snapshot",), np.array([shot.height for shot in snapshots]), mm),
+        "force": Variable(("snapshot",), np.array([shot.force for shot in snapshots]), {"units": "N"}),
         "y": Variable(of_points, places[..., 0], mm),
         "z": Variable(of_points, places[..., 1], mm),
         "wire_radius": Variable(("element",), radius, mm),
@@ -80,7 +80,7 @@ def working_surface(setup: Setup, result: Result) -> Variables:
     shots = [one.snapshot for one in result.working.reached if one.snapshot] if result.working else []
     if not shots:
         return {}
-    surfaces, places = (np.stack([getattr(shot, name) for shot in shots]) for name in ("surface_state", "x"))
+    surfaces, places = (Stack([getattr(shot, name) for shot in shots]) for name in ("surface_state", "x"))
     of_surface = ("element", "gauss", "angle")
     found = {
         "working_surface": Variable(("working", *of_surface, "component"), surfaces, {"units": "MPa"}),
@@ -131,7 +131,7 @@ def way_of_wire(result: Result) -> Variables:
     """Where the wire is after every step, and the stress on it."""
     if not result.frames:
         return {}
-    places, shear = (np.stack([getattr(frame, name) for frame in result.frames]) for name in ("x", "shear"))
+    places, shear = (Stack([getattr(frame, name) for frame in result.frames]) for name in ("x", "shear"))
     about = "about the wire's axis, positive as in a compressed spring; mean of an element's sections"
     return {
         "step_position": Variable(("step", "station", "axis"), places, {"units": "mm"}),

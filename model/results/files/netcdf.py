@@ -1,7 +1,7 @@
 """Labelled arrays and their NetCDF file, without the libraries for reading such files, which are slow to load."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -14,18 +14,44 @@ HEADER = 1 << 20  # maximum number of bytes of a file besides its numbers
 
 
 @dataclass(frozen=True)
+class Stack:
+    """Arrays of one shape along a further, first dimension: a file takes one after the other, without a copy of all.
+
+    Attributes:
+        rows: the arrays, one at least.
+    """
+
+    rows: Sequence[np.ndarray]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of all of them."""
+        return len(self.rows), *self.rows[0].shape
+
+    @property
+    def dtype(self) -> np.dtype:
+        """Of their numbers."""
+        return self.rows[0].dtype
+
+    @property
+    def nbytes(self) -> int:
+        """Of all of them."""
+        return sum(row.nbytes for row in self.rows)
+
+
+@dataclass(frozen=True)
 class Variable:
     """An array with names for its dimensions.
 
     Attributes:
         dims: a name for each dimension.
-        values: numbers, or words.
+        values: numbers, or words; a Stack along the first dimension.
         attrs: texts, such as its `units`.
         is_beside: whether it is a coordinate along its dimensions, none of which has its name.
     """
 
     dims: tuple[str, ...]
-    values: np.ndarray
+    values: np.ndarray | Stack
     attrs: Mapping[str, str] = field(default_factory=dict)
     is_beside: bool = False
 
@@ -64,17 +90,25 @@ def write_netcdf(target: str | Path, data: Mapping[str, Variable], attrs: Mappin
                         file.dimensions[dim] = size
             # Coordinates first: they replace the places held for their dimensions, also in what has these already.
             for name, one in sorted(data.items(), key=lambda each: (each[1].dims != (each[0],), each[1].is_beside)):
-                words = one.values.dtype.kind in "UO"
-                values: Any = one.values.astype(object) if words else one.values
+                kind = one.values.dtype.kind
                 made = file.create_variable(
                     name,
                     one.dims,
-                    h5py.string_dtype() if words else values.dtype,
-                    data=values,
-                    fillvalue=np.nan if values.dtype.kind == "f" else None,
+                    h5py.string_dtype() if kind in "UO" else one.values.dtype,
+                    fillvalue=np.nan if kind == "f" else None,
                 )
+                _fill(made, one.values)
                 made.attrs.update(one.attrs)
                 along = [other for other, it in data.items() if it.is_beside and set(it.dims) <= set(one.dims)]
                 if along and name not in coordinates(data):
                     made.attrs["coordinates"] = " ".join(along)
             file.attrs.update(attrs)
+
+
+def _fill(made: Any, values: np.ndarray | Stack) -> None:
+    """Write the values of a variable of a file."""
+    if isinstance(values, Stack):
+        for number, row in enumerate(values.rows):
+            made[number] = row
+    else:
+        made[...] = values.astype(object) if values.dtype.kind in "UO" else values
