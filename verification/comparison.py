@@ -191,15 +191,21 @@ def _checked(table: Columns, nested: bool) -> Columns:
         if name not in table.names:
             raise table.lacks(name, COLUMNS)
     values, errors = table.numbers("value"), table.numbers("error")
-    if not len(values) or (errors < 0.0).any():
-        raise InputError("give one measured number at least, and its error, 0 or more", "", table.path)
+    if not len(values):
+        raise InputError("give one measured number at least", "", table.path)
+    if (errors < 0.0).any():
+        first = int(np.argmax(errors < 0.0))
+        raise InputError(
+            f"is {errors[first]:g}; must be 0 or more", f"line {table.rows[first][0]}, column error", table.path
+        )
     known = [FORCE, *STRESSES, *NUMBERS]
     if nested:
         known = [FORCE, *OF_NEST, *(f"{name}.{one}" for name in NAMES for one in NUMBERS)]
     for line, row in table.rows:
         quantity = row["quantity"].strip()
         if quantity not in known:
-            near = get_close_matches(quantity, known, 1, 0.7)
+            within = [one for one in known if one in quantity]  # as the rate in initial_rate_N_per_mm
+            near = sorted(within, key=len, reverse=True) or get_close_matches(quantity, known, 1, 0.7)
             right = f"is {near[0]} meant?" if near else f"give a number of summary.json, {', '.join(known[:5])}"
             raise InputError(f"'{quantity}' is none that a run has; {right}", f"line {line}", table.path)
         for needed in ["travel_mm"] * (quantity == FORCE) + ["turn"] * (quantity in STRESSES):

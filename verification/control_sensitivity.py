@@ -1,7 +1,8 @@
-"""How much each number of `solver.control` matters: each is halved and doubled, and the work counted.
+"""How much each number that controls the iteration matters: each is halved and doubled, and the work counted.
 
     scripts/coilset python verification/control_sensitivity.py [--springs NAME …] [--steps N] [--fields NAME …] …
 
+These are the entries of `solver.control` and what `CONSTANTS` of model/equilibrium/settings.py names.
 Each spring goes to block and back to zero force, once per variant. A number with an upper bound of 1 is doubled at most
 halfway to 1; for a growth factor, which is at least 1, the excess over 1 is halved and doubled; the travel of the probe
 and the numbers of automatic steps are varied like all others. Iterations, evaluated states (updates of the body, those
@@ -13,10 +14,13 @@ together.
 
 import argparse
 import csv
+import importlib
 import sys
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
+from types import ModuleType
 from typing import TextIO, get_type_hints
 
 from mpi4py import MPI
@@ -24,7 +28,7 @@ from mpi4py import MPI
 from coilset.model.base.errors import SolveError
 from coilset.model.case import read_case
 from coilset.model.equilibrium.newton.outcome import Outcome
-from coilset.model.equilibrium.settings import Growth, NewtonControl, StepControl
+from coilset.model.equilibrium.settings import CONSTANTS, Growth, NewtonControl, StepControl
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
 from coilset.verification.counting import listen
@@ -35,9 +39,8 @@ GROWTHS = {
     for control in CONTROLS.values()
     for name, kind in get_type_hints(control, include_extras=True).items()
     if kind is Growth
-}
+} | {"penetration_growth", "regrowth", "tolerated_share"}
 SWITCHES = ("predicted_forces",)
-FREE_PENETRATION = 0.02  # wire diameters: the contacts' limit, which stands where no number is given
 AUTOMATIC = (  # of automatic steps only
     "automatic",
     "easy",
@@ -82,9 +85,45 @@ def example(name: str) -> Path:
     return EXAMPLES / (f"{name}.yaml" if name == "ck15_presetting" else f"springs/{name}.yaml")
 
 
-def count(name: str, settings: Iterable[str]) -> Counts:
-    """Run a shipped spring with settings as of `--set`."""
-    analysis, found = Analysis(read_case(example(name), list(settings)), MPI.COMM_SELF), Counts()
+def numbers() -> dict[str, float | None]:
+    """All numbers by their names with their group, those of the entries first."""
+    found = {
+        f"{group}.{field.name}": getattr(control(), field.name)
+        for group, control in CONTROLS.items()
+        for field in fields(control)
+    }
+    return found | {name: getattr(*_constant(name)) for name in CONSTANTS}
+
+
+def _constant(name: str) -> tuple[ModuleType, str]:
+    """The module of a constant, and its name there."""
+    module = CONSTANTS[name].removesuffix(".py").replace("/", ".")
+    return importlib.import_module(f"coilset.model.equilibrium.{module}"), name.partition(".")[2].upper()
+
+
+@contextmanager
+def changed(name: str, value: float) -> Iterator[None]:
+    """With a constant of another value; nothing changes for a name of none."""
+    if name not in CONSTANTS:
+        yield
+        return
+    module, constant = _constant(name)
+    before = getattr(module, constant)
+    setattr(module, constant, value)
+    try:
+        yield
+    finally:
+        setattr(module, constant, before)
+
+
+def count(spring: str, settings: Iterable[str], name: str = "", value: float = 0.0) -> Counts:
+    """Run a shipped spring with settings as of `--set`, and a constant as of `changed`."""
+    with changed(name, value):
+        return _count(Analysis(read_case(example(spring), list(settings)), MPI.COMM_SELF))
+
+
+def _count(analysis: Analysis) -> Counts:
+    found = Counts()
 
     def count_solve(outcome: Outcome) -> None:
         found.iterations += outcome.iterations
@@ -108,8 +147,7 @@ def halved_and_doubled(name: str, value: float | None) -> tuple[float, float]:
     """The two values at which a field is tried; for a switch, both settings."""
     if name in SWITCHES:
         return False, True
-    if value is None:
-        value = FREE_PENETRATION
+    assert value is not None
     if isinstance(value, int):
         return max(1, int(value) // 2), int(value) * 2
     if name in GROWTHS:
@@ -117,28 +155,37 @@ def halved_and_doubled(name: str, value: float | None) -> tuple[float, float]:
     return 0.5 * value, 2.0 * value if 2.0 * value < 1.0 else 0.5 * (1.0 + value)
 
 
-def variants(names: Iterable[str], steps: str | int) -> Iterator[tuple[str, list[str]]]:
-    """Name and settings of each variant; fields of automatic steps are tried with those, the others with `steps`."""
+@dataclass(frozen=True)
+class Variant:
+    """A variant of all springs: its name, settings as of `--set`, and a constant with its value, if it has another."""
+
+    name: str
+    settings: tuple[str, ...]
+    constant: str = ""
+    value: float = 0.0
+
+
+def variants(names: Iterable[str], steps: str | int) -> Iterator[Variant]:
+    """Numbers of automatic steps are tried with those, the others with `steps`; `names`: only these, if any."""
     chosen = set(names)
 
-    def in_steps(kind: str | int) -> list[str]:
-        return [f"loading.{phase}.steps={kind}" for phase in (0, 1)]
+    def in_steps(kind: str | int) -> tuple[str, ...]:
+        return tuple(f"loading.{phase}.steps={kind}" for phase in (0, 1))
 
-    yield "as shipped", in_steps(steps)
-    yield f"{PETSC_SEARCH} of PETSc", [*in_steps(steps), f"solver.options.snes_linesearch_type={PETSC_SEARCH}"]
+    search = f"solver.options.snes_linesearch_type={PETSC_SEARCH}"
+    yield Variant("as shipped", in_steps(steps))
+    yield Variant(f"{PETSC_SEARCH} of PETSc", (*in_steps(steps), search))
     if not chosen or chosen & set(AUTOMATIC):
-        yield "automatic steps", in_steps("auto")
-        yield (
-            f"{PETSC_SEARCH} of PETSc, automatic",
-            [*in_steps("auto"), f"solver.options.snes_linesearch_type={PETSC_SEARCH}"],
-        )
-    for group, control in CONTROLS.items():
-        for field in fields(control):
-            if chosen and field.name not in chosen:
-                continue
-            kind = "auto" if group == "steps" and field.name in AUTOMATIC else steps
-            for value in halved_and_doubled(field.name, getattr(control(), field.name)):
-                yield f"{field.name} = {value:g}", [*in_steps(kind), f"solver.control.{group}.{field.name}={value!r}"]
+        yield Variant("automatic steps", in_steps("auto"))
+        yield Variant(f"{PETSC_SEARCH} of PETSc, automatic", (*in_steps("auto"), search))
+    for name, as_is in numbers().items():
+        _, _, field = name.partition(".")
+        if chosen and field not in chosen:
+            continue
+        kind = in_steps("auto" if field in AUTOMATIC else steps)
+        for value in halved_and_doubled(field, as_is):
+            entry = () if name in CONSTANTS else (f"solver.control.{name}={value!r}",)
+            yield Variant(f"{field} = {value:g}", (*kind, *entry), name, value)
 
 
 def table(springs: Iterable[str], names: Iterable[str], steps: str | int, given: Sequence[str], out: TextIO) -> None:
@@ -146,9 +193,9 @@ def table(springs: Iterable[str], names: Iterable[str], steps: str | int, given:
     rows = csv.writer(out)
     rows.writerow(COLUMNS)
     for spring in springs:
-        for variant, settings in variants(names, steps):
-            found = count(spring, [*given, *settings])
-            rows.writerow([spring, variant, *(getattr(found, column) for column in COLUMNS[2:])])
+        for one in variants(names, steps):
+            found = count(spring, [*given, *one.settings], one.constant, one.value)
+            rows.writerow([spring, one.name, *(getattr(found, column) for column in COLUMNS[2:])])
             out.flush()
 
 
@@ -165,16 +212,14 @@ def page(files: Iterable[Path]) -> None:
     print(
         "| number | value | halved | doubled | additional failed solves | additional cuts |\n|---|---|---|---|---|---|"
     )
-    for control in CONTROLS.values():
-        for field in fields(control):
-            low, high = halved_and_doubled(field.name, value := getattr(control(), field.name))
-            names = [f"{field.name} = {tried:g}" for tried in (low, high)]
-            if not any(names[0] in rows for rows in springs.values()):
-                continue  # not tried
-            cells = [_compared(springs, name) for name in names]
-            shown = FREE_PENETRATION if value is None and field.name not in SWITCHES else value
-            worse = (", ".join(str(cell[k]) for cell in cells) for k in (1, 2))
-            print(f"| `{field.name}` | {shown} | {cells[0][0]} | {cells[1][0]} | {' | '.join(worse)} |")
+    for number, value in numbers().items():
+        _, _, name = number.partition(".")
+        tried = [f"{name} = {each:g}" for each in halved_and_doubled(name, value)]
+        if not any(tried[0] in rows for rows in springs.values()):
+            continue
+        cells = [_compared(springs, one) for one in tried]
+        worse = (", ".join(str(cell[k]) for cell in cells) for k in (1, 2))
+        print(f"| `{name}` | {value} | {cells[0][0]} | {cells[1][0]} | {' | '.join(worse)} |")
 
 
 def _compared(springs: Rows, variant: str) -> tuple[str, int, int]:

@@ -14,7 +14,6 @@ from coilset.model.equilibrium.newton.methods import rod_method
 from coilset.model.equilibrium.newton.newton import Newton, Start
 from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.path.continuation import Continuation
-from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system.layout import SEATS, LineLayout
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
@@ -66,7 +65,7 @@ class Frame:
         self.system = System(self.rod, self.layout, contacts, np.zeros(SEATS))
         # an arc by which every node moves by about the wire's radius
         arc = self.rod.largest_radius * np.sqrt(len(self.layout.station_dofs))
-        limit = ContactLimit(self.system, NewtonControl(), FREE_PENETRATION * 2.0 * self.rod.largest_radius)
+        limit = ContactLimit(self.system, FREE_PENETRATION * 2.0 * self.rod.largest_radius)
         self.continuation = Continuation(Newton(self.system, rod_method(method, 1, options, arc), 1e-7, limit=limit))
         self.held = {int(dof): 0.0 for dof in self.layout.seat_dofs}
         self.held |= {self.dof(node, component): 0.0 for node, components in held for component in components}

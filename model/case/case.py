@@ -33,7 +33,7 @@ from coilset.model.case.settings import assign, located
 from coilset.model.case.sheet import SheetSpec
 from coilset.model.case.working import WorkingSpec
 from coilset.model.equilibrium import petsc_options
-from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
+from coilset.model.equilibrium.settings import CONSTANTS, MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
 ANGLES, ANGLES_COILED = 20, 32
@@ -200,8 +200,20 @@ class ContactSpec(Strict):
         return self
 
 
+def _refuse_constants(data: Any) -> None:
+    """Refuse entries of the control that earlier versions had, and say where these numbers are."""
+    groups = data if isinstance(data, dict) else {}
+    for name in (f"{group}.{name}" for group, given in groups.items() if isinstance(given, dict) for name in given):
+        where = "contact.penetration_limit, in wire diameters" if name == "newton.free_penetration" else ""
+        if name in CONSTANTS:
+            where = f"the constant {name.partition('.')[2].upper()} of model/equilibrium/{CONSTANTS[name]}"
+        if where:
+            problem = "this is no longer an entry, but {where}"
+            raise PydanticCustomError("unknown_entry", problem, {"entry": name, "where": where})
+
+
 class ControlSpec(Strict):
-    """All numbers that control the iteration and the steps."""
+    """Numbers that control the iteration and the steps."""
 
     RENAMED: ClassVar[dict[str, str]] = {"newton.foreseen_forces": "newton.predicted_forces"}
     newton: Annotated[NewtonControl, Field(description="how one step is solved")] = NewtonControl()
@@ -209,8 +221,9 @@ class ControlSpec(Strict):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _earlier_name(cls, data: Any, validate: Any) -> Any:
-        """Accept an entry of the plain class `NewtonControl` by its earlier name."""
+    def _earlier_names(cls, data: Any, validate: Any) -> Any:
+        """Accept an entry of the plain class `NewtonControl` by its earlier name; refuse what are constants now."""
+        _refuse_constants(data)
         newton = data.get("newton") if isinstance(data, dict) else None
         if not isinstance(newton, dict) or "foreseen_forces" not in newton or "predicted_forces" in newton:
             return validate(data)

@@ -23,9 +23,9 @@ from coilset.model.material.law.loop import AnyLaw
 from coilset.model.material.law.parts import Parts
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
-from coilset.model.section.kinds import Sections
 from coilset.model.section.outlined_section import WHOLE
 from coilset.model.section.rules import DiskRule
+from coilset.model.section.sections import Sections
 
 DIGITS = 9  # to which sections must agree to have the same past
 INTERVALS = 12  # of a stress relief, equal ones of log(1 + t/t₁), with t₁ = FIRST of it

@@ -24,6 +24,7 @@ KINDS = {
     "initial rate": "the initial rate could not be computed",
     "initial tension": "few steps show the initial tension",
     "lift-off": "an end lifts off its seat",
+    "not determined": "the tests of the wire do not determine all its constants",
     "peened layer": "the integration points are too coarse for the peened layer",
     "measured axis": "the measured axis is away from the z axis of its file",
     "negative set": "the spring is longer after compression",

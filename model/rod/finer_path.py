@@ -25,7 +25,7 @@ from coilset.model.body.state import State, Where
 from coilset.model.rod.assembly import blocks
 from coilset.model.rod.elements import Element
 from coilset.model.runtime.kernels import njit
-from coilset.model.section.kinds import Sections
+from coilset.model.section.sections import Sections
 
 if TYPE_CHECKING:  # a solve loads MPI in another thread meanwhile
     from mpi4py import MPI

@@ -12,8 +12,7 @@ import numpy as np
 from coilset.model.body.state import Field, State, Where
 from coilset.model.material.creep.law import RateLaw
 from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
-from coilset.model.section.kinds import Sections
-from coilset.model.section.warping import KNOWN
+from coilset.model.section.sections import Sections
 
 POINTS, SURFACE = "point_state", "surface_state"
 KEPT = 4096  # elements up to which all points' trial states are kept: as many as a processor's caches may hold
@@ -56,7 +55,7 @@ class SectionStates:
     @property
     def bearing(self) -> list[str]:
         """Names of the arrays on which the section forces depend."""
-        return [name for name in self._fields if name not in (SURFACE, KNOWN)]
+        return [name for name in self._fields if name not in (SURFACE, *self._sections.iterate)]
 
     def __getitem__(self, name: str) -> np.ndarray:
         """A trial array, or, where it lies in place, at the last equilibrium."""
@@ -70,7 +69,7 @@ class SectionStates:
         """Write the section tangents at the trial strains of a law that holds where κ sets in; as `Sections.update`."""
         sections, strain = copy.copy(self._sections), self._strain.trial
         sections.law_over_time = sections.law_over_time.held()
-        end = {name: values.copy() for name, values in self._on_the_way.items() if name != KNOWN}
+        end = {name: values.copy() for name, values in self._on_the_way.items() if name not in sections.iterate}
         return bool(sections.update(strain, self._start, end, np.empty(strain.shape), D))
 
     def follow(self) -> None:

@@ -15,7 +15,7 @@ from coilset.model.case.head_freedoms import DamperSpec, HeadsSpec
 from coilset.model.case.phases import Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.contact.base import Contact
-from coilset.model.equilibrium.newton.contact_limit import ContactLimit, free_penetration
+from coilset.model.equilibrium.newton.contact_limit import ContactLimit
 from coilset.model.equilibrium.newton.methods import Method, rod_method
 from coilset.model.equilibrium.newton.newton import Newton
 from coilset.model.equilibrium.path.continuation import Continuation
@@ -126,7 +126,7 @@ def build_newton(case: Case, system: System, least_radius: float) -> Newton:
     """
     solver, contact = case.solver, case.contact
     control, wire_diameter = solver.control.newton, 2.0 * system.line.rod.largest_radius
-    limit = ContactLimit(system, control, free_penetration(control, contact.penetration_limit) * wire_diameter)
+    limit = ContactLimit(system, contact.penetration_limit * wire_diameter)
     tolerance, augmented = contact.augmentation_tolerance, np.inf
     if tolerance is None:  # a much deeper state is on the wrong side, or from too long a step
         tolerance = _deepest(case, least_radius)

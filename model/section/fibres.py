@@ -17,11 +17,12 @@ from coilset.model.section.ground import Ground, ground_sections, rim_rule
 from coilset.model.section.integration import FIBRES, section
 from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.rules import DiskRule, rim
+from coilset.model.section.sections import Sections
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 from coilset.model.section.wire import BEND
 
 
-class FibreSections:
+class FibreSections(Sections):
     """All sections of a rod on this rank.
 
     Args:
@@ -37,8 +38,6 @@ class FibreSections:
 
     Attributes:
         components: names of the columns of a point's state.
-        passing: arrays of the trial state in which `update` may write one element after the other in the same place,
-            of which each thread has one.
     """
 
     passing: tuple[str, ...] = ("point_state",)
@@ -119,18 +118,7 @@ class FibreSections:
         D: np.ndarray,
         with_tangent: bool = True,
     ) -> bool:
-        """Advance all sections to the end of the increment.
-
-        Args:
-            strain: ε, γ12, γ13, φ′, κ2, κ3 of the chords, shape (cells, sections, 6).
-            start: state at the last equilibrium, with its `strain`; not changed.
-            trial: state at the end of the increment; written.
-            s: written, resultants about the chords, shape (cells, sections, 6), N and N mm.
-            D: written, ds/de, shape (cells, sections, 6, 6), if `with_tangent`.
-
-        Returns:
-            False if the law found no solution at some point or the strains are not finite.
-        """
+        """See Sections."""
         disk = self.y, self.z, self.weights
         states = start["point_state"], trial["point_state"]
         law = self.law_over_time.over(start, trial)

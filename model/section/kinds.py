@@ -8,16 +8,15 @@
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
+from coilset.model.base.package import package
 from coilset.model.material.law.law import Law
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.warping import WarpingSections
+from coilset.model.section.sections import Sections
 
 KINDS = ("plane", "curved", "warping")
-
-
-Sections = FibreSections | WarpingSections
+WARPING = "coilset.model.section.warping"  # the door to sections that warp freely
 
 
 def make_sections(
@@ -35,9 +34,12 @@ def make_sections(
 
     Raises:
         ValueError: if there is no such kind.
+        InputError: if its package is missing.
     """
     if kind not in KINDS:
         raise ValueError(f"kind '{kind}' is none of {', '.join(KINDS)}")
     if kind == "warping":
-        return WarpingSections(law, parameters, rule, radius, placement, temperature, degree, threads)
+        sections = package(WARPING, "a section that warps", "mesh.section.kind").WarpingSections
+        found: Sections = sections(law, parameters, rule, radius, placement, temperature, degree, threads)
+        return found
     return FibreSections(law, parameters, rule, radius, placement, kind == "curved", temperature, threads)

@@ -46,12 +46,13 @@ from coilset.model.section.ground import cut_sections
 from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
+from coilset.model.section.sections import Sections
 
 KNOWN = "warping_strain"  # section strains to which the trial warping and its slope belong
 DECIMALS = 12  # of κ r and τ r, to which sections of one geometry agree
 
 
-class WarpingSections:
+class WarpingSections(Sections):
     """All sections of a rod on this rank; arguments as in `FibreSections`.
 
     Args:
@@ -60,10 +61,9 @@ class WarpingSections:
     Attributes:
         components: names of the columns of a point's state.
         unknowns: number of warping unknowns of a section.
-        passing: as in `FibreSections`; none, as the points' states go with the warping that was found.
     """
 
-    passing: tuple[str, ...] = ()
+    iterate: tuple[str, ...] = (KNOWN,)
     components: tuple[str, ...] = (
         "s11",
         "s22",
@@ -145,10 +145,8 @@ class WarpingSections:
         D: np.ndarray,
         with_tangent: bool = True,
     ) -> bool:
-        """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent.
-
-        Without `warping_strain` in `trial` the iteration begins at the last equilibrium.
-        """
+        """See Sections; always with the tangent. Without `warping_strain` in `trial` the iteration begins at the last
+        equilibrium."""
         place, law, known = self.placement, self.law_over_time.over(start, trial), trial.get(KNOWN, np.array(np.nan))
         good = self.threads.run(
             update_sections,

@@ -88,8 +88,6 @@ class SpringFit:
             for one in self.intervals.values()
         ]
         sentences = [f"95 % intervals: {', '.join(found)}", f"rms residual {self.scatter:.2g} of the tester's errors"]
-        if self.doubtful:
-            sentences.append(f"not determined: {', '.join(self.doubtful)}")
         return sentences + [one for one in (self.misfit, self.caution) if one]
 
     def material(self, name: str) -> dict[str, Any]:
@@ -108,6 +106,7 @@ class SpringFit:
                 "plastic_work": math.ceil(100.0 * max(model.work, 1.0)) / 100.0,
                 "remark": "; ".join([*self.sentences, *more]),
                 "temperature": temperature,
+                "undetermined": list(self.doubtful),
             },
         }
         return model.form.material(self.values, about)

@@ -37,6 +37,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         *_renamed(case),
         *_accuracy(case),
         *_estimated(case),
+        *_undetermined(law),
         *warm_warnings(case, law, None if isinstance(case.material, str) else case.material.wire),
         *_supports(case, spring),
         *_warping(case, spring, law),
@@ -65,6 +66,16 @@ def _estimated(case: Case) -> Iterator[Warning]:
             "material.wire",
             f"the hardening of {name} is an estimate from its minimum tensile "
             "strength; a test of the wire gives its own (coilset material fit)",
+        )
+
+
+def _undetermined(law: Law) -> Iterator[Warning]:
+    if names := law.data.validity.undetermined:
+        yield Warning(
+            "not determined",
+            "material",
+            f"the tests of {law.name} do not determine {', '.join(names)}: other values fit them as well, and the ± of "
+            "force and set, which are of the computation, leave out what these would change",
         )
 
 

@@ -1,11 +1,14 @@
 """Entries of a case: what is not a number, what is misspelt, paths, earlier names, and messages in words."""
 
+import importlib
+
 import pytest
 
 from coilset.model.base.entry import LONGEST, shown
 from coilset.model.base.errors import InputError
 from coilset.model.case import Case, check, read_case
 from coilset.model.case.settings import assign
+from coilset.model.equilibrium.settings import CONSTANTS
 
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
 TEXT = "spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}\nloading: [{to: block}]\n"
@@ -100,9 +103,27 @@ def test_whole_numbers_may_come_as_floats():
     assert check(raw(solver={"control": {"steps": {"automatic": 4.0}}})).solver.control.steps.automatic == 4
 
 
-@pytest.mark.parametrize(("name", "value"), [("automatic", True), ("automatic", 4.5), ("cut", True), ("cut", "0.5")])
+@pytest.mark.parametrize(
+    ("name", "value"), [("automatic", True), ("automatic", 4.5), ("probe", True), ("probe", "0.5")]
+)
 def test_numbers_of_the_control_are_numbers(name, value):
     assert problem(raw(solver={"control": {"steps": {name: value}}})).startswith(f"solver.control.steps.{name}: ")
+
+
+def test_what_is_a_constant_now_is_refused_with_its_place():
+    """Each constant is where the message says, and has a number."""
+    assert {name.partition(".")[0] for name in CONSTANTS} == {"newton", "steps"}
+    for name, file in CONSTANTS.items():
+        group, _, entry = name.partition(".")
+        found = problem(raw(solver={"control": {group: {entry: 0.5}}}))
+        assert found == (
+            f"solver.control.{name}: this is no longer an entry, but the constant {entry.upper()} "
+            f"of model/equilibrium/{file}"
+        )
+        module = importlib.import_module("coilset.model.equilibrium." + file.removesuffix(".py").replace("/", "."))
+        assert getattr(module, entry.upper()) > 0.0
+    found = problem(raw(solver={"control": {"newton": {"free_penetration": 0.1}}}))
+    assert found.startswith("solver.control.newton.free_penetration: this is no longer an entry, but contact.penetrati")
 
 
 def test_a_material_file_counts_from_the_folder_of_the_case(tmp_path, monkeypatch):

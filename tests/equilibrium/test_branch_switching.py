@@ -7,6 +7,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from coilset.model.case import read_case
+from coilset.model.equilibrium.path import branch_switching
 from coilset.model.equilibrium.path.branch_switching import Snap
 from coilset.model.equilibrium.path.stability import Stability
 from coilset.model.equilibrium.path.step_sizes import Position
@@ -51,9 +52,9 @@ def near_limit():
     return frame, deflection
 
 
-def let_go(frame, factor, unstable=None, **control):
+def let_go(frame, factor, unstable=None):
     newton = frame.continuation.newton
-    snap = Snap(Stability(newton.iteration), StepControl(**control), newton.solve)
+    snap = Snap(Stability(newton.iteration), StepControl(), newton.solve)
     return snap.go(lambda: load(frame, factor), unstable)
 
 
@@ -87,10 +88,11 @@ def test_an_unstable_truss_falls_back_to_where_it_came_from():
     assert outcome.released == pytest.approx(quad(lambda w: 0.5 * LIMIT - force(w), there, after)[0], rel=0.03)
 
 
-def test_what_does_not_come_to_rest_can_be_taken_back():
+def test_what_does_not_come_to_rest_can_be_taken_back(monkeypatch):
+    monkeypatch.setattr(branch_switching, "SNAP_STEPS", 8)
     frame, before = near_limit()
     state, saved = frame.system.state, frame.system.state.copy()
-    assert not let_go(frame, 1.3, snap_steps=8).converged
+    assert not let_go(frame, 1.3).converged
     assert -frame.moved(1)[2] > before
     state.put_back(saved)
     frame.system.restore()

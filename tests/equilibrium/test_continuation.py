@@ -260,8 +260,8 @@ def test_a_solve_that_stagnates_is_reported(make):
 
     Corrections may press the coils into each other here.
     """
-    control = ("solver.control.newton.stagnation=1", "solver.control.newton.free_penetration=1.0")
-    analysis = make("[{to: block, steps: 1}]", *control)
+    analysis = make("[{to: block, steps: 1}]", "solver.control.newton.stagnation=1")
+    analysis.newton.limit.free = 2.0 * analysis.rod.largest_radius
     outcome = analysis.newton.solve(analysis.control.to_height(17.5))
     assert "stagnates" in outcome.reason
     assert outcome.stagnated

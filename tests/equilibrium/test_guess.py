@@ -8,6 +8,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.model.body.state import State, Where
+from coilset.model.equilibrium.path import guess as path_guess
 from coilset.model.equilibrium.path.guess import Guess
 from coilset.model.equilibrium.path.step_sizes import Position
 from coilset.model.equilibrium.system.load import Load
@@ -39,13 +40,19 @@ class Line:
         forces.getArray()[:] = increments.getArray() - self.target
 
 
+@pytest.fixture(autouse=True)
+def _bent_paths(monkeypatch):
+    """A fifth of a step is no kink yet."""
+    monkeypatch.setattr(path_guess, "BEND", 0.2)
+
+
 def parabola(t):
     return np.array([3.0 * t, 1.0 + 2.0 * t + 0.05 * t * t, -0.03 * t * t])
 
 
 def test_a_smooth_path_is_followed_exactly_to_second_order_whatever_the_sizes():
     line = Line(parabola)
-    guess = Guess(line, bend=0.2)
+    guess = Guess(line)
     position = line.walk(guess, [0.5, 1.7, 2.0])
     found = guess.of(LOAD, position, 0.8).getArray()
     assert found == pytest.approx(parabola(2.8) - parabola(2.0), abs=1e-14)
@@ -57,14 +64,14 @@ def test_at_a_kink_the_last_step_alone_counts():
         return np.array([t, max(t - 1.0, 0.0)])
 
     line = Line(kinked)
-    guess = Guess(line, bend=0.2)
+    guess = Guess(line)
     position = line.walk(guess, [1.0, 2.0])
     assert guess.of(LOAD, position, 1.0).getArray() == pytest.approx([1.0, 1.0])
 
 
 def test_the_first_step_of_a_path_has_no_guess_and_the_second_has_one_step_behind_it():
     line = Line(parabola)
-    guess = Guess(line, bend=0.9)
+    guess = Guess(line)
     assert guess.of(LOAD, Position(), 1.0) is None
     position = line.walk(guess, [1.0])
     assert guess.of(LOAD, position, 2.0).getArray() == pytest.approx(2.0 * (parabola(1.0) - parabola(0.0)))
@@ -77,7 +84,7 @@ def test_the_first_step_starts_in_proportion_to_what_was_probed_if_it_goes_to_a_
         return Load(layout, np.array([0, 2]), np.array([0.0, height]), none, np.empty(0))
 
     line = Line(parabola)
-    guess, tried = Guess(line, bend=0.2), np.array([0.0, 0.4, -0.02])
+    guess, tried = Guess(line), np.array([0.0, 0.4, -0.02])
     guess.probed = line.layout.vector(tried.copy()), pressed(-0.02)
     for height in (-0.5, 0.3):
         found = guess.of(pressed(height), Position(), 1.0).getArray()
@@ -88,7 +95,7 @@ def test_the_first_step_starts_in_proportion_to_what_was_probed_if_it_goes_to_a_
 
 def test_after_a_step_with_too_great_an_error_the_start_with_less_force_is_taken():
     line = Line(parabola)
-    guess = Guess(line, bend=0.2)
+    guess = Guess(line)
     position = line.walk(guess, [1.0, 2.0])
     along = parabola(2.5) - parabola(2.0)
     tried = np.array([8.0, 1.0, 2.0])

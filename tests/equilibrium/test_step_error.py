@@ -10,6 +10,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
 from coilset.model.case.case import read_case_data
 from coilset.model.equilibrium.newton.outcome import Estimate
+from coilset.model.equilibrium.path.step_error import LEAST_FACTOR
 from coilset.model.material import library
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
@@ -44,7 +45,7 @@ def test_steps_take_the_size_that_their_error_allows(example):
     assert factor(8.0) == pytest.approx(0.45)
     assert factor(1.0) == pytest.approx(0.9)
     assert factor(0.0) == factor(1e-9) == analysis.case.solver.control.steps.growth
-    assert factor(np.inf) == analysis.case.solver.control.steps.least_factor
+    assert factor(np.inf) == LEAST_FACTOR
     shares, asked = [8.0, 1.331, 1e-9], []
 
     def estimate(ratio, controls, rate):

@@ -23,7 +23,7 @@ ENTRIES = {  # of files of a kind, that the shipped ones leave out
         {"contact": {"coils": "gaps", "bedding": 2000.0, "penetration_limit": 0.03, "friction": {"seats": 0.1}}},
         {"contact": {"augmentation_tolerance": 0.01, "friction": {"coils": 0.2}}},
         {"solver": {"method": "bfgs", "tolerance": 1e-7, "options": {"snes_max_it": 30}}},
-        {"solver": {"control": {"newton": {"stagnation": 10}, "steps": {"cut": 0.4, "automatic": 8}}}},
+        {"solver": {"control": {"newton": {"stagnation": 10}, "steps": {"growth": 1.4, "automatic": 8}}}},
         {"mesh": {"axis": "chords", "section": {"kind": "plane", "rule": "abramowitz9"}}},
         {"mesh": {"elements_per_turn": {"turns": [0, 2.5], "values": [16, 24]}, "sagitta": 0.05}},
         {"mesh": {"section": {"kind": "warping", "degree": 2, "radial": 6, "angular": 24}}},

@@ -128,6 +128,7 @@ def test_one_short_press_leaves_hardening_open_and_says_which_press_would_tell(b
     short = study.noisy(study.pressed(study.spring(), [9.0], uniform=True), rng)
     found = fit_springs([short], known={"share": 0.3})
     assert "rise" in found.doubtful
+    assert found.material("short")["validity"]["undetermined"] == list(found.doubtful)
     advice = next_press(found)
     assert advice.height < 30.0  # far beyond the 35 mm of this press
     assert advice.narrower < 0.5

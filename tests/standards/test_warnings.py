@@ -5,6 +5,7 @@ import pytest
 
 from coilset.meshes.springs.spring import MeasuredSpec, SpringSpec
 from coilset.model.case import read_case
+from coilset.model.material import library
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.spring_warnings import spring_warnings
@@ -19,6 +20,20 @@ def table(turns, values):
 
 def warnings(entries):
     return spring_warnings(SpringSpec.model_validate(RIGHT | entries).build())
+
+
+def test_constants_that_tests_leave_open_are_named_by_a_run(example, tmp_path):
+    """The ± of a prediction with them said nothing of it."""
+    text = (library.FOLDER / "voce.yaml").read_text(encoding="utf-8")
+    for known, entry in ((True, ""), (False, "  undetermined: [rise, rate]\n")):
+        (tmp_path / "mine.yaml").write_text(text.replace("validity:\n", f"validity:\n{entry}"), encoding="utf-8")
+        case = read_case(example, [f"material={tmp_path / 'mine.yaml'}"])
+        spring = case.spring.build()
+        found = [
+            one.message for one in case_warnings(case, spring, case_law(case, spring)) if one.name == "not determined"
+        ]
+        assert len(found) == (not known)
+    assert found[0].startswith("the tests of voce do not determine rise, rate: other values fit them as well")
 
 
 @pytest.mark.parametrize("scale", [0.0141, 1.0, 4.0])

@@ -69,6 +69,16 @@ def test_a_folder(tmp_path):
     (dot,) = drawn.axes[1].containers
     assert dot.lines[0].get_ydata() == [185.0]
     assert len(figure(replace(found, rows=[lost]), "spring").axes) == 1
+    for wrong, message in (
+        (
+            "initial_rate_N_per_mm;9;0,1;;;",
+            r"line 2: 'initial_rate_N_per_mm' is none that a run has; is rate_N_per_mm meant\?",
+        ),
+        ("set_mm;9;0,1;;;\nset_mm;9;-0,1;;;", r"line 3, column error: is -0\.1; must be 0 or more"),
+    ):
+        (tmp_path / "measured.csv").write_text(HEAD + wrong + "\n")
+        with pytest.raises(InputError, match=message):
+            compare(tmp_path, tmp_path / "out", True)
     (tmp_path / "measured.csv").write_text(HEAD + "sett_mm;9;0,1;;;\n")
     with pytest.raises(InputError, match=r"line 2: 'sett_mm' is none that a run has; is set_mm meant\?"):
         compare(tmp_path, tmp_path / "results", overwrite=True)

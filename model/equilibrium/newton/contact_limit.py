@@ -7,8 +7,11 @@ Penetrations up to a few hundredths of the wire diameter are therefore free; dee
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system.system import System
+
+PENETRATION_GROWTH = 1.5  # factor by which one correction may increase a penetration that is deeper than the free one
+SMALLEST_CONTACT_STEP = 0.02  # share of a correction that is made whatever it does to the contacts
+CONTACT_BISECTIONS = 6  # to find the share of a correction that the contacts allow
 
 
 class ContactLimit:
@@ -16,17 +19,16 @@ class ContactLimit:
 
     Args:
         system: System.
-        control: NewtonControl.
         free: penetration up to which a correction may press, mm.
     """
 
-    def __init__(self, system: System, control: NewtonControl, free: float) -> None:
-        self.system, self.control, self.free = system, control, free
+    def __init__(self, system: System, free: float) -> None:
+        self.system, self.free = system, free
         self.limiting = [contact for contact in system.contacts if contact.limits_step]
 
     def allowed(self, penetration: float) -> float:
         """Penetration up to which a correction may press, from a state with `penetration`, mm."""
-        return max(self.free, self.control.penetration_growth * penetration)
+        return max(self.free, PENETRATION_GROWTH * penetration)
 
     def step_length(self, start: PETSc.Vec, direction: PETSc.Vec, sign: float = 1.0) -> float:
         """Largest λ ≤ 1 up to which start + λ · sign · direction presses no deeper than allowed; collective."""
@@ -43,8 +45,8 @@ class ContactLimit:
         allowed = self.allowed(penetration(0.0))
         if penetration(1.0) <= allowed:
             return 1.0
-        low, high = self.control.smallest_contact_step, 1.0
-        for _bisection in range(self.control.contact_bisections):
+        low, high = SMALLEST_CONTACT_STEP, 1.0
+        for _bisection in range(CONTACT_BISECTIONS):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if penetration(middle) <= allowed else (low, middle)
         return low
@@ -63,8 +65,3 @@ class ContactLimit:
             length = self.step_length(start, guess)
             guess.copy(start)
             start.scale(length)
-
-
-def free_penetration(control: NewtonControl, penetration_limit: float) -> float:
-    """Penetration that corrections may always cause, in wire diameters: by default the contacts' limit."""
-    return penetration_limit if control.free_penetration is None else control.free_penetration

@@ -26,6 +26,7 @@ from coilset.model.equilibrium.system.system import System
 
 each_iteration = logging.getLogger("coilset.iterations")  # silent unless its level is set
 
+PART_TOLERANCE = 0.2  # ε of (6.3.1) for a part of a step, whose state is only the start of the next part
 CRAWL, CRAWLS = 0.01, 8  # part of a correction, and how many in a row
 
 
@@ -65,7 +66,7 @@ class Iteration:
     ) -> None:
         self.system, self.control, self.limit, self.prepare = system, control, limit, prepare
         self.test = EquilibriumTest(tolerance, control.stagnation)
-        self.search, self.damping = WorkSearch(system, limit, control), Damping(system.layout)
+        self.search, self.damping = WorkSearch(system, limit), Damping(system.layout)
         self.F = system.layout.vector()
         self.matrix = TangentMatrix(system.body, system.layout)
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
@@ -247,7 +248,7 @@ class Iteration:
         found = imbalance(self.system, self.load, balance)
         self.ratio = found.ratio
         self._report(iteration, norm)
-        tolerance = self.test.tolerance if self.load_factor == 1.0 else self.control.part_tolerance
+        tolerance = self.test.tolerance if self.load_factor == 1.0 else PART_TOLERANCE
         if self.test.is_met(found, tolerance, self.system.body.rounding(X.getArray(readonly=True))):
             return Reason.CONVERGED_FNORM_RELATIVE
         lost = self._lost(snes, iteration, norm)

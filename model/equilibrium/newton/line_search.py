@@ -17,10 +17,17 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.newton.contact_limit import ContactLimit
-from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
 from coilset.model.runtime.kernels import njit
+
+ACCEPTED_WORK = 0.3  # |s(λ)/s(0)| up to which a full correction is accepted although the norm grows
+SOUGHT_WORK = 0.7  # and at which the search for a zero of the work ends where something touches; else at ACCEPTED_WORK
+SEARCH_TRIALS = 6  # maximum number of trials of that search
+BRACKET_MARGIN = 0.15  # distance that a trial keeps from both ends of the bracket, of its width
+BACKTRACK = 0.4  # factor on the step length where the work has no zero
+STRESS_BACKTRACK = 0.25  # the same where the law finds no stress
+SMALLEST_STEP_LENGTH = 0.05  # at which backtracking ends
 
 
 class StepLength(NamedTuple):
@@ -45,11 +52,10 @@ class WorkSearch:
     Args:
         system: System; it is evaluated at the trial points.
         limit: ContactLimit.
-        control: NewtonControl.
     """
 
-    def __init__(self, system: System, limit: ContactLimit, control: NewtonControl) -> None:
-        self.system, self.limit, self.control = system, limit, control
+    def __init__(self, system: System, limit: ContactLimit) -> None:
+        self.system, self.limit = system, limit
         # vectors around arrays, for it takes longer to ask a vector for its array than to go through it
         self._along, self._forces = (np.zeros(system.layout.size_local) for _ in range(2))
         self._direction, self._force = (system.layout.vector(values) for values in (self._along, self._forces))
@@ -66,7 +72,7 @@ class WorkSearch:
             predicts: whether the body predicts its section forces after the correction.
             damped: whether the correction is, see Damping: then any that goes downhill all along is right.
         """
-        system, control = self.system, self.control
+        system = self.system
         self._x, self._load, self._load_factor, self._predicts = x, load, load_factor, predicts
         self._damped = damped
         system.evaluate(x)
@@ -80,8 +86,8 @@ class WorkSearch:
         if system.max_penetration > allowed and (limit := self.limit.step_length(x, y, -1.0)) < 1.0:
             self._direction.scale(limit)
             work, norm = self._at(1.0)
-        while work is None and length > control.smallest_step_length:
-            length *= control.stress_backtrack
+        while work is None and length > SMALLEST_STEP_LENGTH:
+            length *= STRESS_BACKTRACK
             work, norm = self._at(length)
         if work is not None and not pending:
             F.copy(self._force)
@@ -98,7 +104,7 @@ class WorkSearch:
     def _is_right(self, start: tuple[float, float], work: float, norm: float) -> bool:
         """Whether norm or work of the forces have decreased."""
         downhill = self._damped and 0.0 < work <= start[0]
-        return downhill or norm < start[1] or abs(work) <= self.control.accepted_work * abs(start[0])
+        return downhill or norm < start[1] or abs(work) <= ACCEPTED_WORK * abs(start[0])
 
     def _without_second_order(self, limit: float, length: float) -> tuple[float, float]:
         """Work and norm at the last evaluation, at `length`, without the spurious forces of finite rotations.
@@ -130,10 +136,10 @@ class WorkSearch:
         Where contacts close on the way, the work falls ever more steeply,
         and to find its zero well takes more states than it saves.
         """
-        control, low, low_work, high, high_work, side = self.control, 0.0, start_work, length, work, 0
-        sought = start_work * (control.sought_work if self.system.touches else control.accepted_work)
-        for _trial in range(control.search_trials):
-            margin, secant = control.bracket_margin * (high - low), (low * high_work - high * low_work)
+        low, low_work, high, high_work, side = 0.0, start_work, length, work, 0
+        sought = start_work * (SOUGHT_WORK if self.system.touches else ACCEPTED_WORK)
+        for _trial in range(SEARCH_TRIALS):
+            margin, secant = BRACKET_MARGIN * (high - low), (low * high_work - high * low_work)
             length = min(max(secant / (high_work - low_work), low + margin), high - margin)
             found, _ = self._at(length)
             if found is None:
@@ -150,8 +156,8 @@ class WorkSearch:
     def _back(self, start_norm: float, length: float, norm: float) -> float:
         """Step length at which the norm is smaller than at the start, or the smallest that was found."""
         best = norm, length
-        while length > self.control.smallest_step_length and best[0] >= start_norm:
-            length *= self.control.backtrack
+        while length > SMALLEST_STEP_LENGTH and best[0] >= start_norm:
+            length *= BACKTRACK
             best = min(best, (self._at(length)[1], length))
         return best[1]
 

@@ -23,6 +23,7 @@ from coilset.model.equilibrium.system.system import System
 
 log = logging.getLogger("coilset.steps")
 
+SMALLEST_PART = 0.1  # of a step, that is solved on the way to the whole; below it, the step is cut
 WITHIN_REACH = 1e-2  # of the change of forces: an iteration that ends with less out of balance goes on once
 FEW_AUGMENTATIONS, LESS = 5, 0.9  # after so many of them, penetrations are less than this part of what they were
 
@@ -68,7 +69,7 @@ class Newton:
     ) -> None:
         self.system, self.control = system, control or NewtonControl()
         self.augmentation_tolerance, self.augmented = augmentation_tolerance, augmented
-        self.limit = limit or ContactLimit(system, self.control, np.inf)
+        self.limit = limit or ContactLimit(system, np.inf)
         self.predicts = system.body.predicts and self.control.predicted_forces is not False
         self.iteration = Iteration(system, method, tolerance, self.control, self.limit, prepare)
 
@@ -177,7 +178,7 @@ class Newton:
                 part = 0.5 * (aim - reached)
                 crawls = iteration.reason == Reason.DIVERGED_TR_DELTA
                 whole = not self.iteration.load.changes  # a part of it is the same
-                if part < self.control.smallest_part or crawls or whole or not self.system.touches:
+                if part < SMALLEST_PART or crawls or whole or not self.system.touches:
                     return iterations, linear, failed
                 failed += 1
                 X.set(0.0) if good is None else good.copy(X)

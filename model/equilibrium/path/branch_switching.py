@@ -21,6 +21,9 @@ from coilset.model.equilibrium.system.load import Drag, Load
 log = logging.getLogger("coilset.steps")
 FASTER = 4.0  # maximum factor of a change of drag, and of a step's length over the intended one
 FADES = 0.7  # factor of the least drag, by a step: after four, that of the step that failed is tried again
+SNAP_ADVANCE = 1.0  # wire radii: distance that a snapping spring moves in its first step against the drag
+SNAP_STEPS = 200  # maximum number of these steps until the spring comes to rest
+SNAP_FAILURES = 8  # of these steps in a row that may fail or go FASTER times as far
 STUCK = 1e-3  # of the intended step: an unstable state that moves less is held by contact
 
 
@@ -110,7 +113,7 @@ class Snap:
         """
         descent = self._begin(load(), unstable)
         outcome = Outcome(False, "the spring does not come to rest", np.inf)
-        for _step in range(self.control.snap_steps):
+        for _step in range(SNAP_STEPS):
             outcome = self._descend(load(), descent)
             if outcome.converged:
                 if (rest := self._rest(load, descent)) is not None:
@@ -118,7 +121,7 @@ class Snap:
                 if descent.is_stuck:
                     break
                 descent.adapt()
-            elif descent.failed > self.control.snap_failures:
+            elif descent.failed > SNAP_FAILURES:
                 break
         return replace(outcome, converged=False)
 
@@ -133,7 +136,7 @@ class Snap:
         else:
             self.system.restore()
             weakest = self.stability.weakest(self.stability.iteration.load)
-        advance = self.control.snap_advance * self.system.line.rod.largest_radius
+        advance = SNAP_ADVANCE * self.system.line.rod.largest_radius
         weights = self.stability.weights(load)
         return Descent(holding(weakest), origin, weights, advance, weakest, np.zeros_like(origin))
 

@@ -21,7 +21,7 @@ from coilset.model.equilibrium.path.guess import Guess
 from coilset.model.equilibrium.path.next_touch import CROSSING, NEAR, RESTART, SHORT, NextTouch
 from coilset.model.equilibrium.path.stability import Stability
 from coilset.model.equilibrium.path.step_error import StepError
-from coilset.model.equilibrium.path.step_sizes import ON_MARK, Path, StepSizes
+from coilset.model.equilibrium.path.step_sizes import Path, StepSizes, tolerates
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Load
 
@@ -65,7 +65,7 @@ class Continuation:
         self.refusal: Callable[[], str | None] = lambda: None
         self.cause: Callable[[], str] = lambda: ""
         self.steps, self.number = StepSizes(self.control), 0
-        self.guess = Guess(self.system, self.control.bend)
+        self.guess = Guess(self.system)
         self.next_touch = NextTouch(self.system)
         self._spent: list[Outcome] = []  # all solves of the step in progress
         self._unstable: PETSc.Vec | None = None  # increments of an attempt that ended unstable
@@ -196,7 +196,7 @@ class Continuation:
     def _judged_by(self, estimate: Estimate, outcome: Outcome, size: float, accurately: bool) -> Outcome:
         """Reject an equilibrium with too large an error, if steps are to be accurate."""
         outcome = replace(outcome, estimate=estimate)
-        if not accurately or estimate.share <= self.control.tolerated_share or size <= self.control.finest:
+        if not accurately or tolerates(estimate.share, size):
             return outcome
         reason = f"its error is estimated at {estimate.share:.3g} of what a step may have"
         return replace(outcome, converged=False, reason=reason, refused=True)
@@ -239,15 +239,12 @@ class Continuation:
     def _ends_here(self, path: Path, size: float, outcome: Outcome) -> bool:
         """Whether the path of a failed step ends, or must be left because it becomes unstable.
 
-        It ends where the step is as short as one may be, or where `patience` is used up. The last stable state is near
-        once the step is as short as `unstable_cuts` make a regular one, however many of these were for steps before.
+        It ends where the step is as short as one may be, or where `patience` is used up.
         """
-        control = self.control
-        ends = control.cut * size < control.smallest or self.steps.stalls(path, self._in_vain)
+        ends = self.steps.is_last(size) or self.steps.stalls(path, self._in_vain)
         if self.stability is None or (self._unstable is None and (not ends or outcome.refused)):
             return False
-        near = size <= (1.0 + ON_MARK) * control.cut**control.unstable_cuts
-        return ends or near or self.steps.position.cuts >= control.unstable_cuts
+        return ends or self.steps.is_near_unstable(size)
 
     def _snap(self, path: Path, place: float) -> Outcome:
         """Leave a path that ends or becomes unstable, and find a stable state.

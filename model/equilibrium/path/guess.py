@@ -13,12 +13,11 @@ from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
 
+BEND = 0.05  # share of a step by the last rate that the change of rates may add to it; with more the path has a kink
+
 
 class Guess:
     """Guesses of a step's increments.
-
-    Args:
-        bend: part of a step by the last rate that the change of rates may add to it; with more the path has a kink.
 
     Attributes:
         carried: whether rates are carried on with the sections.
@@ -26,8 +25,8 @@ class Guess:
         probed: increments under a load that was only tried from the last equilibrium, and that load.
     """
 
-    def __init__(self, system: System, bend: float) -> None:
-        self.system, self.bend = system, bend
+    def __init__(self, system: System) -> None:
+        self.system = system
         self.carried = False
         self.too_far: tuple[PETSc.Vec, float] | None = None
         self.probed: tuple[PETSc.Vec, Load] | None = None
@@ -89,7 +88,7 @@ class Guess:
             difference.scale(-size / earlier)
             difference.axpy(1.0, guess)
             difference.scale((size + last) / (earlier + last))
-            kink = difference.norm() - self.bend * guess.norm()
+            kink = difference.norm() - BEND * guess.norm()
             if max_of_ranks(load.layout.comm, kink) <= 0.0:
                 guess.axpy(1.0, difference)
         return guess
@@ -100,7 +99,7 @@ class Guess:
         bent = self._rate(self._last.equilibrium, load, 0.5 * (ratio + 1.0))
         bent.aypx(-1.0, guess)
         bent.scale(ratio)
-        kink = bent.norm() - self.bend * guess.norm()
+        kink = bent.norm() - BEND * guess.norm()
         if max_of_ranks(load.layout.comm, kink) <= 0.0:
             guess.axpy(1.0, bent)
         guess.scale(ratio)

@@ -19,6 +19,9 @@ from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.heads import Heads
 
 ORDER = 3
+LEAST_REST = 0.2  # of what a step may bring in: it may do so even if nothing of the accuracy is left
+CAUTION = 0.9  # factor on the size that the estimated error allows
+LEAST_FACTOR = 0.25  # smallest factor on the length of a step after a large error, or when it is cut because of one
 # what is remembered: maximum force, N, travel of the first step of all, mm, and how many contact elements are closed
 GREATEST, FIRST, CLOSED = range(3)
 # A spring is held where its height, over its free length, or its force, over the maximum, changes by no more; it
@@ -84,7 +87,7 @@ class StepError:
         left, before = works[2] / first, (works[3] - works[2]) / first
         rest = 2.0 * (1.0 - abs(before) / (self.accuracy * greatest))
         allowed = self.steps.step_share * self.accuracy * greatest
-        return max(abs(new) / allowed, abs(left) / (allowed * min(max(rest, self.steps.least_rest), 1.0)))
+        return max(abs(new) / allowed, abs(left) / (allowed * min(max(rest, LEAST_REST), 1.0)))
 
     def takes_time(self) -> bool:
         """Does time pass in the trial step?"""
@@ -114,5 +117,5 @@ class StepError:
 
     def _factor(self, share: float) -> float:
         steps = self.steps
-        wanted = steps.growth if share == 0.0 else steps.caution * share ** (-1.0 / ORDER)
-        return min(max(wanted, steps.least_factor), steps.growth)
+        wanted = steps.growth if share == 0.0 else CAUTION * share ** (-1.0 / ORDER)
+        return min(max(wanted, LEAST_FACTOR), steps.growth)

@@ -13,6 +13,15 @@ from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Load
 
 ON_MARK = 1e-9  # of a regular step: what is nearer to a mark is on it
+CUT = 0.5  # factor on the length of a step that found no equilibrium
+UNSTABLE_CUTS = 8  # of a step that ends in an unstable state, before its path is left
+REGROWTH = 2.0  # factor by which an equal step that was cut grows again, up to size 1
+EASY, HARD = 5, 10  # iterations up to which the next automatic step becomes longer, and from which it becomes shorter
+# Factor on the length of an automatic step after a hard one, unless that was shorter than a hard one before it and took
+# more iterations for its length.
+SHRINKAGE = 0.7
+TOLERATED_SHARE = 2.0  # of the error that a step may have, up to which it is still kept; the next one is shorter
+FINEST = 2.0**-6  # size below which an automatic step is no longer shortened because of its error
 ADVANCE = 1e-2  # of a path, which must be made before `patience` evaluations are in vain
 
 
@@ -141,24 +150,36 @@ class StepSizes:
 
     def cut(self, outcome: Outcome, size: float) -> bool:
         """Make a step of this size, which failed, shorter; is it still as long as a step must be?"""
-        factor = self.control.cut
+        factor = CUT
         if outcome.refused and outcome.estimate is not None:  # only its error was too large
             factor = outcome.estimate.factor
         shorter = factor * size
         self.position = replace(self.position, size=shorter, cuts=self.position.cuts + 1, last=0.0)
         return shorter >= self.control.smallest
 
+    def is_last(self, size: float) -> bool:
+        """Whether a step of this size would be too short if it were cut."""
+        return CUT * size < self.control.smallest
+
+    def is_near_unstable(self, size: float) -> bool:
+        """Whether a step of this size, which ends in an unstable state, is short enough to leave its path.
+
+        The last stable state is near once the step is as short as so many cuts make a regular one, however many of
+        these were for steps before.
+        """
+        return size <= (1.0 + ON_MARK) * CUT**UNSTABLE_CUTS or self.position.cuts >= UNSTABLE_CUTS
+
     def _following(self, path: Path, outcome: Outcome, size: float) -> float:
         """Size of the step after one of this size."""
         control = self.control
         if not path.automatic:
-            return min(1.0, control.regrowth * size)
-        easy, hard = outcome.iterations <= control.easy, outcome.iterations >= control.hard
+            return min(1.0, REGROWTH * size)
+        easy, hard = outcome.iterations <= EASY, outcome.iterations >= HARD
         hard = hard and not self._shortened_in_vain(path.step_length(self.position.done, size), outcome.iterations)
-        factor = control.growth if easy else control.shrinkage if hard else 1.0
+        factor = control.growth if easy else SHRINKAGE if hard else 1.0
         if outcome.estimate is not None:
-            least = control.finest / size  # up to there its error does not shorten a step
-            factor = min(max(outcome.estimate.factor, least), control.shrinkage if hard else control.growth)
+            least = FINEST / size  # up to there its error does not shorten a step
+            factor = min(max(outcome.estimate.factor, least), SHRINKAGE if hard else control.growth)
         return min(control.largest, factor * size)
 
     def _shortened_in_vain(self, length: float, iterations: int) -> bool:
@@ -167,5 +188,10 @@ class StepSizes:
         Where forces jump, as at coils that slip and points that begin to flow, iterations hardly depend on the length.
         """
         last = self.position
-        shorter = last.iterations >= self.control.hard and length < last.before
+        shorter = last.iterations >= HARD and length < last.before
         return shorter and iterations * last.before > last.iterations * length
+
+
+def tolerates(share: float, size: float) -> bool:
+    """Whether a step of a size is kept whose error is so much of what a step may have."""
+    return share <= TOLERATED_SHARE or size <= FINEST

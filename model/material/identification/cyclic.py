@@ -108,8 +108,6 @@ class CyclicFit(Fit):
             }
         terms = [{"C": c[f"C_{i}"], "gamma": c[f"gamma_{i}"]} for i in range(1, self.terms + 1)]
         remark = "Cyclic tests in one direction; as far as they went."
-        if self.doubtful:
-            remark += f" They hardly determine {', '.join(self.doubtful)}."
         return self.file(name, remark, isotropic, {"law": "chaboche", "terms": terms}, "none")
 
 

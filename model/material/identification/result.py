@@ -95,7 +95,11 @@ class Fit:
             "description": "Constants identified from tests",
             "source": "coilset material fit: " + ", ".join(test.name for test in self.tests),
             "units": "N, mm, K",
-            "validity": {"plastic_work": float(f"{self.work:.3g}"), "remark": " ".join([remark, *self.tester])},
+            "validity": {
+                "plastic_work": float(f"{self.work:.3g}"),
+                "remark": " ".join([remark, *self.tester]),
+                "undetermined": list(self.doubtful),
+            },
             "temperatures": [at],
         }
 

@@ -219,6 +219,10 @@ class Validity(Strict):
         Unit("K"),
         Field(gt=0, description="the one at which yield and hardening were tested, if at others only moduli are known"),
     ] = None
+    undetermined: Annotated[
+        tuple[str, ...],
+        Field(strict=False, description="a list of the constants that the tests do not determine; a run warns of them"),
+    ] = ()
 
 
 class MaterialFile(Strict):
