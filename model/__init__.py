@@ -1,4 +1,4 @@
-"""The mechanics of coilset: material, section, rod, contact, solid, problem, solvers, loading and results."""
+"""The mechanics of coilset, from the case to results and pages; docs/architecture.md describes its rooms."""
 
 from coilset.model.runtime.apart import load_apart
 from coilset.model.runtime.libraries import load_in_order, load_lazily

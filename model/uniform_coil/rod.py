@@ -40,7 +40,7 @@ class UniformState:
     Attributes:
         coils: wire diameter, mean diameter, pitch (mm) and number of turns, shape (n, 4).
         q: R̄ (mm), ϑ (rad), h̄ (mm/rad), λ, shape (n, 4).
-        points: point states of the section points, shape (n, points, n_state), MPa, as in `material.rod`.
+        points: σ₁₁, τ₁₂, τ₁₃, B₁₁, B₁₂, B₁₃, b* of the section points, shape (n, points, n_state), MPa.
         force: axial force, compression positive, shape (n,), N; torque: about the axis, shape (n,), N mm.
         sections: N, Q₃, Mt, M₃, shape (n, 4), N and N mm; tangents: their derivatives by E, shape (n, 4, 4).
     """

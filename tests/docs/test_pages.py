@@ -1,5 +1,7 @@
 """What a page says to type works after what it said before, and the files that it names are there."""
 
+import ast
+import importlib
 import itertools
 import re
 import shlex
@@ -49,3 +51,28 @@ def test_commands_follow_each_other(name):
         folder = dict(itertools.pairwise(words)).get("--out", default)
         assert folder not in taken or {"--overwrite", "--resume", "--collect"} & set(words), words
         taken.add(folder)
+
+
+def imported(page):
+    """Module and name of each import from coilset in a page's blocks of Python."""
+    for block in re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL):
+        for node in ast.walk(ast.parse(block)):
+            if isinstance(node, ast.ImportFrom) and node.module.partition(".")[0] == "coilset":
+                yield from ((node.module, alias.name) for alias in node.names)
+            if isinstance(node, ast.Import):
+                yield from ((alias.name, None) for alias in node.names if alias.name.startswith("coilset"))
+
+
+def test_what_a_page_imports_is_there():
+    """A name is an attribute of its module, or a module in it."""
+    found = {pair for page in PAGES.values() for pair in imported(page)}
+    assert len(found) > 10
+    missing = []
+    for module, name in sorted(found, key=str):
+        try:
+            owner = importlib.import_module(module)
+            if name is not None and not hasattr(owner, name):
+                importlib.import_module(f"{module}.{name}")
+        except ImportError:
+            missing.append((module, name))
+    assert missing == []
