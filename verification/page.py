@@ -10,7 +10,7 @@ HEAD = """# Verification: what is compared, and with what deviation
 
 `coilset verify` runs these cases, or those that are named; `--fast` those that take seconds, which are part of the
 tests; `--list` names them. It ends with one table of every number: computed, reference, deviation, tolerance and
-verdict. For a number that is shown but cannot be judged, the reason is given. The references are closed solutions,
+verdict. For a number that is shown but cannot be judged, and for a case of which numbers are not met, the reason is given. The references are closed solutions,
 published tables, integrals, or integrations of other equations by other means (`verification/references/`); each case's
 docstring states where they come from and what its tolerance is based on.
 
@@ -34,7 +34,7 @@ def page(folder: str | Path, before: str = "") -> str:
     for name in registry.names():
         case, file = registry.load(name), Path(folder) / name / "record.json"
         speed = "" if case.fast else " *(slow)*"
-        texts.append(f"- **{name}**{speed}: {case.title}")
+        texts.append(f"- **{name}**{speed}: {case.title}" + (f". *Not met*: {case.unmet}" if case.unmet else ""))
         record = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {"checks": []}
         checks, stopped = record["checks"], record.get("stopped", "")
         # a record from before there were verdicts counts as none

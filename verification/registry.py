@@ -15,13 +15,15 @@ from coilset.verification.study import Study
 
 @dataclass(frozen=True)
 class Case:
-    """One case: its name, title, text, whether it takes seconds only, and the function that fills a Study."""
+    """One case: its name, title, text, whether it takes seconds only, the function that fills a Study, and why numbers
+    of it are not met, empty where all are."""
 
     name: str
     title: str
     text: str
     fast: bool
     run: Callable[[Study], None]
+    unmet: str = ""
 
 
 def names() -> list[str]:
@@ -48,4 +50,4 @@ def load(name: str) -> Case:
         raise InputError(f"'{shortened(name)}' is not a case; {hint}", "verify")
     module = importlib.import_module(modules[name])
     title, _, text = (inspect.getdoc(module) or "").partition("\n")
-    return Case(name, title, text.strip(), getattr(module, "FAST", False), module.run)
+    return Case(name, title, text.strip(), getattr(module, "FAST", False), module.run, getattr(module, "UNMET", ""))

@@ -150,3 +150,10 @@ def test_the_page_in_docs_names_every_case():
     for case in map(registry.load, registry.names()):
         assert f"- **{case.name}**" in text
         assert case.title in text
+
+
+def test_the_page_in_docs_gives_the_reason_for_each_case_that_is_not_met():
+    text = (Path(__file__).resolve().parents[2] / "docs" / "verification.md").read_text(encoding="utf-8")
+    off = {line.split("`")[1] for line in text.splitlines() if line.startswith("| `") and "not met |" in line}
+    assert off == {name for name in registry.names() if registry.load(name).unmet}
+    assert [name for name in off if f"*Not met*: {registry.load(name).unmet}" not in text] == []
