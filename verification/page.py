@@ -10,9 +10,9 @@ HEAD = """# Verification: what is compared, and with what deviation
 
 `coilset verify` runs these cases, or those that are named; `--fast` those that take seconds, which are part of the
 tests; `--list` names them. It ends with one table of every number: computed, reference, deviation, tolerance and
-verdict. For a number that is shown but cannot be judged, and for a case of which numbers are not met, the reason is given. The references are closed solutions,
-published tables, integrals, or integrations of other equations by other means (`verification/references/`); each case's
-docstring states where they come from and what its tolerance is based on.
+verdict. For a number that is shown but cannot be judged, and for a case that is not met, the reason is given. The
+references are closed solutions, published tables, integrals, or integrations of other equations by other means
+(`verification/references/`); each case's docstring states where they come from and what its tolerance is based on.
 
 This page is written by `coilset verify --page docs/verification.md` from the records in `results/verify/`; a case
 without a record there keeps its previous rows. Of the *n* numbers with one source, the one that uses most of its
