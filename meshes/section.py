@@ -60,7 +60,7 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, inside:
     """Mesh a section.
 
     Args:
-        outline: `Outline`, see `section_shapes`.
+        outline: `Outline`, see `section_shapes`; with its `hole`, if it has one.
         across: triangles across the round section of the same area, up to MOST_ACROSS.
         degree: of the triangles' sides and of the displacements, 2 or 3.
         inside: how much finer the triangles are at the inside of the coil, where stress is highest and varies most:
@@ -80,8 +80,14 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, inside:
         raise InputError(f"{degree} is not possible; give 2 or 3", "section.degree")
     with _drawn(outline) as curves:
         face = gmsh.model.occ.addPlaneSurface([gmsh.model.occ.addCurveLoop(curves)])
+        area, hole = gmsh.model.occ.getMass(2, face), getattr(outline, "hole", 0.0)
+        if hole:  # OpenCASCADE's integral over what is left is 0.2 % off
+            area *= 1.0 - hole**2
+            inner = gmsh.model.occ.copy([(2, face)])
+            gmsh.model.occ.dilate(inner, 0, 0, 0, hole, hole, hole)
+            ((_, face),), _ = gmsh.model.occ.cut([(2, face)], inner)
         gmsh.model.occ.synchronize()
-        area, outer = gmsh.model.occ.getMass(2, face), gmsh.model.getBoundary([(2, face)], oriented=False)
+        outer = gmsh.model.getBoundary([(2, face)], oriented=False)
         if not area > 0.0:
             raise InputError("the curve crosses itself between its points; give more of them", "section.points")
         size = 2.0 * np.sqrt(area / np.pi) / across

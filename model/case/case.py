@@ -64,8 +64,8 @@ class SectionSpec(Strict):
         Field(
             ge=1,
             le=9,
-            description="degree of the polynomials of a warping section; left out: 3, of an oval, egg or tube 5, of "
-            "other wire that is not round 8",
+            description="degree of the polynomials of a warping section, in a tube of the harmonics around it; left "
+            "out: 3, of an oval, egg or tube 5, of other wire that is not round 8",
         ),
     ] = None
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (

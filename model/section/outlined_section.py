@@ -13,7 +13,7 @@ import numpy as np
 from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs.functions import gauss
 from coilset.model.base.errors import InputError
-from coilset.model.section.polynomials import Basis
+from coilset.model.section.polynomials import Basis, Harmonics, Monomials, exponents
 from coilset.model.section.rules import SURFACE_POINTS, DiskRule, rim
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class Section(ABC):
 
     @abstractmethod
     def basis(self, degree: int) -> Basis:
-        """Polynomials that are orthonormal over the section."""
+        """Polynomials up to a degree that are orthonormal over the section, harmonics up to it over a ring."""
 
     def warping(self, bend: float = 0.0) -> "Warping":
         """How it warps in a wire of curvature `bend`, κ r."""
@@ -131,7 +131,7 @@ class Segment(Section):
         across = np.sin(min(self._last, 0.5 * np.pi))
         n = np.array(self.normal)
         axes = np.stack([np.array([n[1], -n[0]]) / across, n / half])
-        return Basis.over(degree, *self.fine, (1.0 - half) * n, axes)
+        return Basis.over(Monomials(exponents(degree), (1.0 - half) * n, axes), *self.fine)
 
 
 class Outlined(Section):
@@ -219,7 +219,7 @@ class Outlined(Section):
             raise InputError(problem, "spring.wire.outline")
         places, weights = self._product(rings, along)
         rest = points - len(weights)
-        places = np.concatenate([places, np.tile(weights @ places / weights.sum(), (rest, 1))])
+        places = np.concatenate([places, np.repeat(places[:1], rest, axis=0)])  # the middle may be a hole
         name = f"outline {rings} × {sum(along)}"
         return OutlinedRule(places, np.concatenate([weights, np.zeros(rest)]), name, self)
 
@@ -238,8 +238,11 @@ class Outlined(Section):
     def basis(self, degree: int) -> Basis:
         """See Section."""
         places, weights = self.fine
+        if self.boundary.hole:
+            return Basis.over(Harmonics(degree, self.boundary.hole), places, weights)
         centre = weights @ places / weights.sum()
-        return Basis.over(degree, places, weights, centre, np.diag(1.0 / np.abs(places - centre).max(axis=0)))
+        axes = np.diag(1.0 / np.abs(places - centre).max(axis=0))
+        return Basis.over(Monomials(exponents(degree), centre, axes), places, weights)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import ufl
 from dolfinx import fem
 
 from coilset.meshes.section import section_mesh
-from coilset.meshes.section_shapes import Curve, Oval, Trapezoid, parse, rectangle, round_wire
+from coilset.meshes.section_shapes import Curve, Oval, Trapezoid, Tube, parse, rectangle, round_wire
 from coilset.model.base.errors import InputError
 
 
@@ -26,6 +26,7 @@ def outline(n=24):
         (round_wire(5.0), np.pi * 2.5**2, 1e-4),
         (Oval(4.0, 6.0), np.pi * 6, 1e-4),
         (Oval(6.0, 4.0), np.pi * 6, 1e-4),
+        (Tube(5.0, 3.0), np.pi * 4, 1e-4),
         (rectangle(4.0, 6.0), 24.0, 1e-12),
         (rectangle(4.0, 6.0, 0.5), 24 - (4 - np.pi) * 0.25, 1e-4),
         (Trapezoid(4.0, 5.0, 6.0), 22.0, 1e-12),

@@ -25,7 +25,7 @@ def elastic():
 def test_polynomials_are_orthonormal():
     """With a rule of degree 15 for products of degree 10; 1, y and z are the first three."""
     rule, basis = polar(5, 16), Basis.of_disk(5)
-    powers, coefficients = basis.powers, basis.coefficients
+    powers, coefficients = basis.functions.powers, basis.coefficients
     y, z = rule.points.T
     p = coefficients @ np.array([y**a * z**b for a, b in powers])
     np.testing.assert_allclose((p * rule.weights) @ p.T, np.eye(21), atol=1e-13)

@@ -1,10 +1,12 @@
 """Springs of wire that is not round: a round one as an outline, hands, and the examples."""
 
+import json
 from pathlib import Path
 
 import pytest
 
 from coilset.model.case import check, read_case
+from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards.case_sheet import case_sheet
 
@@ -51,3 +53,30 @@ def test_the_valve_spring_goes_to_block():
     assert found.steps[-1].seat_height_mm == pytest.approx(spring.block_height, abs=1e-6)
     assert forces[1] - forces[0] < 0.9 * (forces[-2] - forces[-3])
     assert found.steps[-1].penetration_mm < 0.06
+
+
+def test_a_tube_beyond_yield_is_within_the_stated_error(tmp_path):
+    """138.5 N by a ring's tube over its disk of the same diameter, 0.8085, times the spring of that disk."""
+    law = {"law": "voce", "yield_stress": 400.0, "rise": 300.0, "rate": 40.0}
+    point = {"temperature": 293.15, "elasticity": {"G": 79230.769, "nu": 0.3}, "isotropic": law}
+    steel = {"name": "steel", "description": "made up", "source": "made up", "units": "N, mm, K"}
+    steel["validity"] = {"plastic_work": 2000.0, "remark": "none"}
+    steel["temperatures"] = [point | {"kinematic": "none", "non_normality": "none"}]
+    (tmp_path / "steel.yaml").write_text(json.dumps(steel))
+    data = {
+        "spring": {"wire": {"tube": {"outer": 4.0, "inner": 2.4}}, "mean_diameter": 40.0, "turns": 4.0, "pitch": 10.0},
+        "material": str(tmp_path / "steel.yaml"),
+        "ends": "clamped",
+        "release": "held",
+        "loading": [{"to": {"travel": 19.336}}, {"to": {"force": 0}}],
+    }
+
+    def pressed(kind):
+        analysis = Analysis(check(data | {"mesh": {"section": {"kind": kind}}}))
+        return summarise(analysis.setup, analysis.run())
+
+    free, curved = pressed("warping"), pressed("curved")
+    assert 138.4 < free["force_max_N"] < 138.8
+    assert free["set_mm"] >= 3.21
+    assert abs(curved["force_max_N"] - free["force_max_N"]) < curved["estimated_force_error_N"] < 5.0
+    assert abs(curved["set_mm"] - free["set_mm"]) < curved["estimated_set_error_mm"] < 0.5

@@ -13,6 +13,8 @@ from coilset.model.uniform_coil.section import RISE, Coil, derivatives, strains
 STRAINS = np.array([0, 2, 3, 5])  # Γ₁, Γ₃, K₁, K₃ among ε, γ12, γ13, φ′, κ2, κ3
 FREE = slice(0, 2)  # R̄ and ϑ
 ITERATIONS = 30
+LARGEST = 0.1  # change of R̄ in an iteration, over R̄: beyond, it leads to a coil that is turned inside out
+HALVINGS = 5  # of a travel
 
 
 class OutlinedCoil:
@@ -63,8 +65,21 @@ class OutlinedCoil:
         derivatives(self._coil, q, S, B, H)
         return self._coil.j * B.T @ S, self._coil.j * B.T @ T @ B + self._coil.j * H
 
-    def go_to(self, travel: float | None) -> None:
-        """To a travel of a turn, mm, or, if that is None, to no force."""
+    def go_to(self, travel: float | None, halvings: int = HALVINGS) -> None:
+        """To a travel of a turn, mm, in parts if need be, or, if that is None, to no force.
+
+        Raises:
+            SolveError: if no equilibrium was found.
+        """
+        try:
+            self._step_to(travel)
+        except SolveError:
+            if travel is None or halvings == 0:
+                raise
+            self.go_to(0.5 * (self.travel + travel), halvings - 1)
+            self.go_to(travel, halvings - 1)
+
+    def _step_to(self, travel: float | None) -> None:
         q, n = self.q.copy(), 2 if travel is not None else 3
         if travel is not None:
             _, K = self._evaluate(q)
@@ -75,7 +90,10 @@ class OutlinedCoil:
             f, K = self._evaluate(q)
             if np.abs(f[:n]).max() <= 1e-9 * np.abs(K[RISE, RISE]) * self.rise:
                 break
-            q[:n] -= np.linalg.solve(K[:n, :n], f[:n])
+            change = np.linalg.solve(K[:n, :n], f[:n])
+            if not abs(change[0]) < LARGEST * self.q[0]:
+                raise SolveError("the coil's radius jumps")
+            q[:n] -= change
         else:
             raise SolveError("no equilibrium of the coil")
         self.sections.update_surface(self._strain, self.start, self.trial)
