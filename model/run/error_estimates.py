@@ -6,14 +6,13 @@ the first power of the elements' length, and three times as large where it falls
 stated was measured: FORCE, SET and SHEAR. Where the largest residual stress is at the last section of the middle turns,
 its change up to their end is added.
 
-A few of its sections are followed with a **finer rule** along the same strains. The work of the difference of their
-forces, s_finer − s, on the deformation of the step, over its travel, is the error of the force; on the elastic
-deformation of the first step it is what is left at the release, as in
-`coilset.model.equilibrium.path.step_error`. Wire with a past gets it with the finer rule, too, and the difference of
-its surface's shear counts as well. SECTION times as much is stated.
+**Section**: a few of its sections are followed with a finer rule (`coilset.model.run.followed_sections`). SECTION times
+as much is stated.
 
 **Warping**: `curved` sections of wire that is not round keep the elastic warping as they yield. Sections of four
-elements, evenly spread, are followed in the same way as ones that warp freely.
+elements, evenly spread, are followed in the same way as ones that warp freely, and SECTION times as much is stated. Of
+those that do, the degree of the polynomials is followed: by how much HIGHER ones differ from the same with the finer
+rule, DEGREE times.
 
 **Contact**: bodies that lie in each other by p under pressures q hold the energy U = ½ Σ q p. Rigid ones hold none, and
 by the principle of minimum potential energy their spring's is greater by U to first order: its force is greater by
@@ -26,28 +25,26 @@ stiffness of rigid ones is greater by 1/(1 − ρ) there, and with it the error 
 import itertools
 import logging
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
-
-import numpy as np
-from mpi4py import MPI
 
 from coilset.meshes.springs.shapes import Table
 from coilset.meshes.springs.stations import LEAST
-from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
+from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.base.errors import CoilsetError
 from coilset.model.case import Case
+from coilset.model.case.case import SectionSpec
 from coilset.model.equilibrium.system.layout import LineLayout
-from coilset.model.manufacture.initial_state import give_sections_past
 from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step, Working
 from coilset.model.results.records.releases import FREE, Release, is_turned, last_release
 from coilset.model.results.stresses import change_of_sign, shear_inside, to_the_end
+from coilset.model.run.followed_sections import FollowedSections
 from coilset.model.run.load_history import LoadHistory
 from coilset.model.run.working import working_states
-from coilset.model.section.kinds import make_sections
 from coilset.model.section.outlined_section import outline_of
-from coilset.model.section.rules import DiskRule, polar
+from coilset.model.section.rules import polar
 from coilset.model.standards.case_warnings import keeps_elastic_warping, warping_can_be_estimated
 
 log = logging.getLogger("coilset.steps")
@@ -56,7 +53,7 @@ FOLLOWED = 8  # elements whose sections are followed with the finer rule
 RINGS, ANGLES = 12, 48  # of the finer rule at least
 FINER_OUTLINE = 3  # times the points, of a section that is no disk
 WARPING = 4  # elements whose sections are followed as ones that warp freely
-WARPING_DEGREE, WARPING_POINTS = 7, 160  # a rectangle 2:1 far beyond yield: 0.4 % of the force too stiff
+HIGHER = 2  # by so many degrees, polynomials of sections that warp
 STILL = 1e-9  # of the free length: a step of less travel is one of force or time
 # Error by the mesh over the difference to the companion: a third by the second order, all of it by the first. In twelve
 # springs with 8, 16 and 64 elements per turn the error at 16 was 0.00 to 0.7 of the difference of the forces, 0.01 to
@@ -64,7 +61,10 @@ STILL = 1e-9  # of the free length: a step of less travel is one of force or tim
 FORCE, SET, SHEAR = 0.75, 1.0, 1.0
 # That of the initial rate was 0.3 to 0.5 of the difference where ends are closed, 1.8 in a double cone, both with 16.
 RATE = 1.0
-SECTION = 1.25  # of the difference to the finer rule, which has an error of its own
+SECTION = 1.25  # of the difference to the finer rule, or to free warping, which have an error of their own
+# Of the difference to the higher polynomials: kinks converge slowly. In rectangles at D/d = 3.2 to 10, far beyond
+# yield, the error of the force with degree 8 was 2.1 to 3.4 of what degree 10 changes.
+DEGREE = 3.0
 RIGID = 1.5  # of dU/ds: with forty times the bedding, forces of seven springs rose by 0.9 to 1.5 times as much
 TAKEN = 0.9  # part of the travel that the bedding takes at most: beyond, the force has no limit with rigid contacts
 FURTHER = 1e-5  # of the free length: a travel over which the contacts' energy changes in proportion
@@ -99,18 +99,6 @@ def estimated(analysis: LoadHistory) -> Result:
     return replace(result, steps=steps, errors=errors, working=working, rate_error=rate_error)
 
 
-def _together(comm: MPI.Comm, action: Callable[[], object]) -> None:
-    """Do something on each rank; where it fails on one, all raise its CoilsetError; collective."""
-    problem = None
-    try:
-        action()
-    except CoilsetError as error:
-        problem = str(error)
-    problem = next((one for one in comm.allgather(problem) if one), None)
-    if problem:
-        raise CoilsetError(problem)
-
-
 def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
     """The case of the companion: half of the elements, the steps of the run, no estimates, a balance of its own."""
     mesh = case.mesh
@@ -142,7 +130,7 @@ class _Seen:
 
     Attributes:
         step: Step.
-        section, warping, contact: error of the force by the section rule, by elastic warping and by contact, N.
+        section, warping, contact: error of the force by the section rule, by the warping and by contact, N.
         taken: travel that the bedding has taken, mm; 0 without a force.
     """
 
@@ -153,81 +141,6 @@ class _Seen:
     taken: float
 
 
-class _Followed:
-    """Some of a rod's sections as others, along the same strains.
-
-    Args:
-        companion: whose rod it is.
-        elements: their number, evenly spread along the wire.
-        kind, rule, degree: of these sections, as in `make_sections`.
-    """
-
-    def __init__(self, companion: LoadHistory, elements: int, kind: str, rule: DiskRule, degree: int) -> None:
-        rod = companion.rod
-        self.rod, self.comm, self.inside = rod, companion.comm, companion.setup.inside
-        along = rod.line.element[: len(rod.radius)]  # the same elements on any number of ranks
-        stride = max(1, math.ceil(rod.mesh.topology.index_map(1).size_global / elements))
-        self.cells = np.flatnonzero(along % stride == stride // 2)
-        self.sections = make_sections(
-            kind,
-            rod.law,
-            rod.parameters,
-            rule,
-            rod.radius[self.cells],
-            rod.placement.part(self.cells),
-            rod.temperature,
-            degree,
-        )
-        self.start = self.sections.initial_state()
-        _together(self.comm, lambda: give_sections_past(self.sections, rule, self.start, rod, companion.case.spring))
-        self.start["strain"] = self._strain()
-        self.trial = {name: values.copy() for name, values in self.start.items()}
-        self._clock(self.start)
-        self.length = stride * rod.l0[self.cells, None, None] * np.array(rod.element.weights)[:, None]
-        self.first: tuple[np.ndarray, float] | None = None
-        self.lost = False
-
-    def _strain(self) -> np.ndarray:
-        return self.rod.state["strain"].equilibrium[self.cells].copy()
-
-    def _clock(self, state: dict[str, np.ndarray]) -> None:
-        if "clock" in self.rod.state:
-            state["clock"] = self.rod.state["clock"].equilibrium.copy()
-
-    def follow(self, travel: float, still: bool) -> float:
-        """Error of the force after the last step, of so much travel, mm, or `still`; collective, N."""
-        error, change = self._advance()
-        if self.first is None and abs(travel) > 0.0:
-            self.first = change, travel
-        first, unit = self.first or (change, math.inf)
-        return self._work(error, first) / unit if still else self._work(error, change) / travel
-
-    def _advance(self) -> tuple[np.ndarray, np.ndarray]:
-        """Error of the section forces after the last step, and its strains, shape (cells, sections, 6)."""
-        strain = self._strain()
-        self._clock(self.trial)
-        change = strain - self.start["strain"]
-        forces, D = np.zeros_like(strain), np.empty((*strain.shape, 6))
-        if len(self.cells):
-            good = self.sections.update(strain, self.start, self.trial, forces, D, False)
-            self.lost = self.lost or not good
-            self.sections.update_surface(strain, self.start, self.trial)
-        self.trial["strain"] = strain
-        self.start, self.trial = self.trial, self.start
-        return forces - self.rod.coefficients.s[self.cells], change
-
-    def _work(self, error: np.ndarray, change: np.ndarray) -> float:
-        """Work of a section-force error on increments of strain, N mm; not a number where the law found no stress."""
-        work = sum_of_ranks(self.comm, float(np.sum(self.length * error * change)))
-        return math.nan if max_of_ranks(self.comm, float(self.lost)) else work
-
-    def surface_error(self) -> float:
-        """Largest difference of shear stress at the inside, MPa; collective."""
-        ours = self.inside.shear(self.rod.surface_state[self.cells], self.rod.sections.components)
-        theirs = self.inside.shear(self.start["surface_state"], self.sections.components)
-        return max_of_ranks(self.comm, float(np.abs(theirs - ours).max(initial=0.0)))
-
-
 class _Watch:
     """Follows the companion's sections and notes the energy of its contacts; collective."""
 
@@ -235,30 +148,42 @@ class _Watch:
         self.companion, self.comm = companion, companion.comm
         section, rule = companion.case.mesh.section, companion.rod.rule
         finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
-        outline = outline_of(rule)
+        outline, case = outline_of(rule), companion.case
         if outline is not None:
             finer = outline.rule(FINER_OUTLINE * len(rule))
-        self.finer = _Followed(companion, FOLLOWED, section.kind, finer, companion.case.section_degree)
-        self.warping: _Followed | None = None
-        case, law = companion.case, companion.law
-        if outline and keeps_elastic_warping(case, companion.spring) and warping_can_be_estimated(case, law):
-            finer = outline.rule(max(WARPING_POINTS, len(rule)))
-            self.warping = _Followed(companion, WARPING, "warping", finer, WARPING_DEGREE)
-        self.travel, self.greatest, self.torque = 0.0, 0.0, 0.0
+        warps = outline is not None and section.kind == "warping"
+        self.warps, self.left_out = warps, DEGREE if warps else SECTION
+        follow = partial(FollowedSections, companion.rod, case.spring, companion.setup.inside)
+        self.finer = follow(WARPING if warps else FOLLOWED, section.kind, finer, case.section_degree)
+        self.warping: FollowedSections | None = None
+        if warps:
+            self.warping = follow(WARPING, section.kind, finer, case.section_degree + HIGHER)
+        elif (
+            outline and keeps_elastic_warping(case, companion.spring) and warping_can_be_estimated(case, companion.law)
+        ):
+            usual, shape = SectionSpec(kind="warping"), case.wire_shape
+            finer = outline.rule(max(len(usual.build(shape=shape)), len(rule)))
+            self.warping = follow(WARPING, "warping", finer, usual.polynomials(shape))
+        self.greatest, self.torque = 0.0, 0.0
         self.seen, self.at = list[_Seen](), dict[int, int]()  # and which of them is that of a step, by its number
 
     def __call__(self, step: Step) -> None:
-        travel, self.travel = step.travel_mm - self.travel, step.travel_mm
+        self.greatest, self.torque = max(self.greatest, abs(step.force_N)), max(self.torque, abs(step.torque_Nmm))
+        if not (self.seen and step.rests(self.seen[-1].step, self.greatest, self.torque)):
+            self.seen.append(self._look_at(step))
+        self.at[step.number] = len(self.seen) - 1
+
+    def _look_at(self, step: Step) -> _Seen:
+        """The companion after a step that loads or relaxes it; collective."""
+        travel = step.travel_mm - (self.seen[-1].step.travel_mm if self.seen else 0.0)
         still = abs(travel) < STILL * self.companion.spring.free_length
         section = self.finer.follow(travel, still)
         warping = self.warping.follow(travel, still) if self.warping else 0.0
+        warping = self.left_out * (warping - section if self.warps else warping)
         energy, force = self._energy(), abs(step.force_N)
-        self.greatest, self.torque = max(self.greatest, force), max(self.torque, abs(step.torque_Nmm))
         loaded = force > FREE * self.greatest
-        if not (self.seen and step.rests(self.seen[-1].step, self.greatest, self.torque)):
-            contact = _with_rigid_contacts(self._slope(step, energy), force if loaded else math.inf)
-            self.seen.append(_Seen(step, section, warping, contact, 2.0 * energy / force if loaded else 0.0))
-        self.at[step.number] = len(self.seen) - 1
+        contact = _with_rigid_contacts(self._slope(step, energy), force if loaded else math.inf)
+        return _Seen(step, section, warping, contact, 2.0 * energy / force if loaded else 0.0)
 
     def _energy(self) -> float:
         """Energy of the contacts' bedding at the last evaluation, N mm; collective."""
@@ -281,8 +206,9 @@ class _Watch:
         return math.nan
 
     def surface_errors(self) -> tuple[float, float]:
-        """Errors of the shear stress at the inside by the section rule and by elastic warping, MPa; collective."""
-        return self.finer.surface_error(), self.warping.surface_error() if self.warping else 0.0
+        """Errors of the shear stress at the inside by the section rule and by the warping, MPa; collective."""
+        warping = self.left_out * self.warping.surface_error() if self.warping else 0.0
+        return SECTION * self.finer.surface_error(), warping
 
 
 @dataclass(frozen=True)
@@ -325,7 +251,7 @@ def _judged(
         shears = [None if one is None else slope * one for one in sets]
         by_mesh = SHEAR * abs(other - shear_inside(setup, release.snapshot)[0])
         by_mesh += to_the_end(setup, release.snapshot)
-        for k, surface in zip((1, 3), (SECTION * surfaces[0], surfaces[1]), strict=True):
+        for k, surface in zip((1, 3), surfaces, strict=True):
             shears[k] = None if (shear := shears[k]) is None else shear + surface
         by_mesh += change_of_sign(setup, release.snapshot, by_mesh + sum(one or 0.0 for one in shears[1:]))
         shears[0] = by_mesh

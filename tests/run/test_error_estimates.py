@@ -121,23 +121,46 @@ def test_a_bedding_in_series_with_a_spring_is_off_by_all_that_it_takes():
     assert error_estimates._with_rigid_contacts(slope, force) / error_estimates.RIGID == pytest.approx(true, rel=1e-3)
 
 
-def test_elastic_warping_is_off_by_what_free_warping_changes():
-    """A turn of oval wire, far beyond yield."""
-    spring = {"wire": {"oval": {"width": 5.0, "height": 3.0}}, "mean_diameter": 30.0, "turns": 1.0, "pitch": 9.0}
-    loading = [{"to": {"travel": 4.0}, "steps": 4}, {"to": {"force": 0}, "steps": 1}]
-    data = {"spring": spring, "material": "ck15", "ends": "clamped", "loading": loading, "accuracy": "50 %"}
+WIRES = {
+    "oval": {"oval": {"width": 5.0, "height": 3.0}},
+    "rectangle": {"rectangle": {"width": 5.0, "height": 4.0, "corner": 0.5}},
+    "tube": {"tube": {"outer": 4.0, "inner": 2.4}},
+}
+
+
+@pytest.mark.parametrize("wire", WIRES)
+def test_elastic_warping_is_off_by_what_free_warping_changes(wire):
+    """Two turns, far beyond yield; the yielding inside of the tube shears more than the forces of the turn ask for."""
+    spring = {"wire": WIRES[wire], "mean_diameter": 30.0, "turns": 2.0, "pitch": 9.0}
+    loading = [{"to": {"travel": 6.0}, "steps": 6}, {"to": {"force": 0}, "steps": 2}]
+    data = {"spring": spring, "material": "linear_isotropic", "ends": "clamped", "loading": loading}
 
     def pressed(estimates, **section):
-        case = check(data | {"mesh": {"elements_per_turn": 8, "section": section}})
+        case = check(data | {"accuracy": "50 %", "mesh": {"elements_per_turn": 8, "section": section}})
         analysis = Analysis(case, MPI.COMM_SELF, False, estimates=estimates)
         analysis.run()
         return summarise(analysis.setup, analysis.result)
 
-    curved, free = pressed(True), pressed(False, kind="warping", degree=5)
+    curved, free = pressed(True), pressed(False, kind="warping")
     for number, value in (("force_N", "force_max_N"), ("set_mm", "set_mm")):
-        true = abs(free[value] - curved[value])
-        assert curved["estimated_errors"]["warping"][number] == pytest.approx(true, rel=0.3)
+        true, found = abs(free[value] - curved[value]), curved["estimated_errors"]["warping"][number]
+        assert found / error_estimates.SECTION == pytest.approx(true, rel=0.2)
+        assert true < found
     assert not [one for one in curved["warnings"] if one["name"] == "elastic warping"]
+
+
+def test_the_degree_of_free_warping_is_part_of_the_error():
+    """A turn of a sharp rectangle at D/d = 4: degree 8 leaves 0.4 to 0.5 % of the force (`verify yielding-ring`)."""
+    spring = {"wire": {"rectangle": {"width": 5.0, "height": 4.0}}, "mean_diameter": 20.0, "turns": 1.0, "pitch": 6.0}
+    loading = [{"to": {"travel": 1.5}, "steps": 4}, {"to": {"force": 0}, "steps": 2}]
+    mesh = {"elements_per_turn": 8, "section": {"kind": "warping"}}
+    data = {"spring": spring, "material": "linear_isotropic", "ends": "clamped", "loading": loading, "mesh": mesh}
+    analysis = Analysis(check(data | {"accuracy": "50 %"}), MPI.COMM_SELF, False)
+    analysis.run()
+    summary = summarise(analysis.setup, analysis.result)
+    errors = summary["estimated_errors"]
+    stated = errors["warping"]["force_N"] + errors["section"]["force_N"]
+    assert 4e-3 < stated / summary["force_max_N"] < 1.2e-2
 
 
 def test_a_companion_that_finds_no_equilibrium_leaves_the_errors_unknown(example, monkeypatch):

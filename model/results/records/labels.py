@@ -55,7 +55,7 @@ CAUSES = {
     "mesh": "mesh",
     "section": "section points",
     "contact": "contact",
-    "warping": "elastic warping",
+    "warping": "warping",
 }
 """Causes of these errors, in words."""
 

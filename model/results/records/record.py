@@ -442,7 +442,7 @@ class RunErrors:
     Attributes:
         steps: the length of the steps; mesh: that of the elements; section: the points of the sections; contact: the
             stiffness of seats and coils against penetration; warping: that of sections that are not round, kept
-            elastic.
+            elastic, or found among polynomials of a degree.
     """
 
     steps: Errors
