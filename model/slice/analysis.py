@@ -128,6 +128,7 @@ class SliceAnalysis:
         self.lattice = Lattice(self.body)
         self.points = Watch(self.body, self.lattice.places)
         ξ = np.linspace(*_across(section), 61)
+        ξ = ξ[np.abs(ξ) >= getattr(outline, "hole", 0.0) * ξ.max()]
         self.line = Watch(self.body, np.stack([ξ, np.zeros_like(ξ)], axis=1))
         self.problem = SliceProblem(
             self.body, _ends_turn(case), SelfContact(self.body), turns=self.turns, free_length=self.spring.free_length
@@ -317,14 +318,13 @@ def _wire(case: Case) -> Outline | None:
     """The outline of a case's wire that is not round.
 
     Raises:
-        InputError: if it is hollow or turned.
+        InputError: if it is turned.
     """
     spec = case.spring.wire if isinstance(case.spring, SpringSpec) else None
     if spec is None:
         return None
-    if spec.tube is not None or spec.angle:
-        entry = "tube" if spec.tube is not None else "angle"
-        raise InputError("a slice is a solid section that is not turned; use 'coilset solve'", f"spring.wire.{entry}")
+    if spec.angle:
+        raise InputError("a slice is a section that is not turned; use 'coilset solve'", "spring.wire.angle")
     return spec.drawn()
 
 

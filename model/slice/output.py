@@ -85,8 +85,10 @@ def _row(sheet: Figure, row: list[Axes], analysis: SliceAnalysis, shot: SliceSna
         axes.set(aspect="equal", xlabel="outward, ξ in mm", ylabel="upward, η in mm", title=f"{name}\n{when}")
         sheet.colorbar(shown, ax=axes, label="MPa", shrink=0.9)
     ξ = analysis.line.places[:, 0]
-    row[2].plot(ξ, shot.line[:, 4], "C0-", lw=1.4, label="shear τ13, upward")
-    row[2].plot(ξ, shot.line[:, 0], "C1--", lw=1.1, label="normal stress σ11")
+    hole = np.flatnonzero(np.diff(ξ) > 1.5 * (ξ[1] - ξ[0])) + 1  # no line across it
+    ξ, τ, σ = (np.insert(values, hole, np.nan) for values in (ξ, shot.line[:, 4], shot.line[:, 0]))
+    row[2].plot(ξ, τ, "C0-", lw=1.4, label="shear τ13, upward")
+    row[2].plot(ξ, σ, "C1--", lw=1.1, label="normal stress σ11")
     row[2].axhline(0, color="k", lw=0.5)
     row[2].set(xlabel="ξ on the line η = 0, in mm", ylabel="stress in MPa", title=f"from inside to outside\n{when}")
     row[2].grid(lw=0.3)

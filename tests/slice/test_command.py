@@ -9,7 +9,7 @@ import pytest
 
 from coilset.meshes.section_shapes import Curve
 from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
+from coilset.model.case import check, read_case
 from coilset.model.results.records import summary as of_spring
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
@@ -17,6 +17,7 @@ from coilset.model.slice import output
 from coilset.model.slice.analysis import TOUCHING, SliceAnalysis
 from coilset.model.slice.summary import UNSEEN, summarise
 from coilset.scripts.commands.slice import slice_case
+from coilset.verification.spring_references.yielding_ring import Ring, Steel, tube
 
 SHORT = ["loading=[{to: {travel: 6}, steps: 3}, {to: {force: 0}, steps: 2}]", "ends=clamped"]
 
@@ -99,6 +100,23 @@ def test_block_is_where_slanted_sides_touch(example):
     coil = SliceAnalysis(read_case(example, ["loading=[{to: block, steps: 2}]"]), diamond, across=3.0)
     coil.run()
     assert 0.0 <= coil.problem.pressure.gap <= TOUCHING * coil.wire_diameter
+
+
+def test_the_tubes_of_a_slice_and_of_a_ring_twist_alike(tmp_path):
+    """A coil of nearly no pitch; the line across the section leaves its hole out."""
+    spring = {"wire": {"tube": {"outer": 4.0, "inner": 2.4}}, "mean_diameter": 40.0, "turns": 4.0, "pitch": 4.1}
+    data = {
+        "spring": spring,
+        "material": "elastic",
+        "ends": "clamped",
+        "loading": [{"to": {"travel": 0.1}, "steps": 1}],
+    }
+    coil = SliceAnalysis(check(data))
+    ring = Ring(20.0, tube(4.0, 2.4), Steel(coil.law.G, lambda strain: (np.full_like(strain, 1e9), strain)), (2, 8))
+    ring.go_to(1e-3)
+    assert 4.0 * coil.run().rate == pytest.approx(ring.force / ring.travel, rel=2e-3)
+    assert np.abs(coil.line.places[:, 0]).min() >= 1.2
+    output.figure(tmp_path / "tube.png", coil)
 
 
 @pytest.mark.parametrize("keep", ["height", "force"])
