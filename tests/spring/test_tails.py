@@ -87,8 +87,9 @@ def test_force_and_travel_with_hooks(shape):
 
 @pytest.mark.parametrize("shape", ["english", "german"])
 def test_the_stress_in_a_loop_is_that_of_a_curved_beam(shape):
-    """At every section of the loop between its side and its top, q 32 M/(π d³) + 4 N/(π d²) at the inside, with the
-    arm of the deformed hook: within 1 %. A straight beam has 7 % less. Where a german hook's bend begins, of 1.5 d, the
+    """At every section of the loop between its side and its top, the stress at the inside by Winkler and Bach, whose
+    neutral fibre is at (R + √(R² − d²/4))/2, with the arm of the deformed hook: within 0.5 %, 0.1 % at the greatest
+    stress. With the arm as drawn it would be 1 to 3 % greater, and of a straight beam 7 % less. Where a german hook's bend begins, of 1.5 d, the
     torsion by Wahl's (4C − 1)/(4C − 4), C = 2R/d, within 3 %, where a straight wire's is 27 % less."""
     spring = WOUND | both("hooks", shape=shape)
     analysis, _ = solved(spring, [{"to": {"force": -60}, "steps": [0.5, 1.0]}])
@@ -96,10 +97,11 @@ def test_the_stress_in_a_loop_is_that_of_a_curved_beam(shape):
     stations = [station for station, _ in analysis.control.tips.values()]
     top, turns = shot.x[stations[1]], setup.turns
     mid = 0.5 * (turns[1:] + turns[:-1])
-    first = line.corners[-3] + (0.15 if shape == "english" else 0.0)
-    loop = np.flatnonzero((mid > first) & (mid < line.held[1] - 0.05))
-    r = line.tails[1].pieces[-1].radius
-    q, stress = en13906.bending_correction(2 * r / WIRE), surface.component(shot.surface_state, shot.components, "s11")
+    loop = np.flatnonzero((mid > line.corners[-3]) & (mid < line.held[1] - 0.05))
+    r, area = line.tails[1].pieces[-1].radius, np.pi * WIRE**2 / 4
+    neutral, inner = (r + np.sqrt(r**2 - WIRE**2 / 4)) / 2, r - WIRE / 2
+    by_moment = (neutral - inner) / (area * (r - neutral) * inner)
+    stress, found = surface.component(shot.surface_state, shot.components, "s11"), []
     assert len(loop) > 2
     for e in loop:
         at = shot.x[e] + (shot.x[e + 1] - shot.x[e]) * 0.5
@@ -109,9 +111,10 @@ def test_the_stress_in_a_loop_is_that_of_a_curved_beam(shape):
         at += bow * outwards / np.linalg.norm(outwards)
         arm = np.hypot(*(top - at)[:2])
         along = 60.0 * abs(chord[2]) / np.linalg.norm(chord)
-        expected = q * 32 * 60.0 * arm / (np.pi * WIRE**3) + 4 * along / (np.pi * WIRE**2)
         middle = setup.element.xi.shape[0] // 2
-        assert stress[e, middle].max() == pytest.approx(expected, rel=0.01)
+        found.append((stress[e, middle].max(), by_moment * 60.0 * arm + along / area))
+        assert found[-1][0] == pytest.approx(found[-1][1], rel=5e-3)
+    assert max(found)[0] == pytest.approx(max(found)[1], rel=1e-3)
     if shape == "german":
         bend = next(e for e, turn in enumerate(mid) if turn > TURNS)
         along = (shot.x[bend + 1] - shot.x[bend]) / np.linalg.norm(shot.x[bend + 1] - shot.x[bend])
