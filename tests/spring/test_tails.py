@@ -89,8 +89,9 @@ def test_force_and_travel_with_hooks(shape):
 def test_the_stress_in_a_loop_is_that_of_a_curved_beam(shape):
     """At every section of the loop between its side and its top, the stress at the inside by Winkler and Bach, whose
     neutral fibre is at (R + √(R² − d²/4))/2, with the arm of the deformed hook: within 0.5 %, 0.1 % at the greatest
-    stress. With the arm as drawn it would be 1 to 3 % greater, and of a straight beam 7 % less. Where a german hook's bend begins, of 1.5 d, the
-    torsion by Wahl's (4C − 1)/(4C − 4), C = 2R/d, within 3 %, where a straight wire's is 27 % less."""
+    stress. With the arm as drawn it would be 1 to 3 % greater, and of a straight beam 7 % less. Where a german hook's
+    bend begins, of 1.5 d, the torsion by Wahl's (4C − 1)/(4C − 4), C = 2R/d, within 3 %, where a straight wire's is
+    27 % less."""
     spring = WOUND | both("hooks", shape=shape)
     analysis, _ = solved(spring, [{"to": {"force": -60}, "steps": [0.5, 1.0]}])
     shot, setup, line = analysis.result.snapshots[-1], analysis.setup, analysis.spring
