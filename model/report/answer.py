@@ -50,10 +50,10 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         if s["set_mm"] is not None
         else "the spring was not released"
     )
+    if held_matters(s):
+        share += f", {with_unit(s['set_held_mm'], 'mm', 3)} while its ends are held"
     if earlier := last_released(s):
         share += f", at the last release, in step {earlier[0]} of {earlier[1]}"
-    if held_matters(s):
-        share += f"; {with_unit(s['set_held_mm'], 'mm', 3)} while its ends are held"
     inside = s["residual_shear_inside_MPa"]
     turn = s.get("residual_shear_inside_turn")
     at = "" if turn is None else f" at turn {turn:.2f}"

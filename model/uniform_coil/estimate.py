@@ -4,12 +4,14 @@ A spring of another shape is replaced by the cylinder with the same compliance a
 bowing are neglected.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass
 from math import isfinite, pi, sqrt
 
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import SolveError
 from coilset.model.case.case import Case
 from coilset.model.case.phases import Phase
 from coilset.model.case.targets import check_targets, check_working
@@ -74,7 +76,8 @@ def estimate(case: Case, spring: Spring, law: Law) -> Estimate:
     found["force_max_N"] = greatest
     if force == 0.0 or abs(force) < FREE * abs(greatest):
         if case.release == "free":
-            _, state = press(state, law, None, np.zeros(1), RULE, True, temperature)
+            with suppress(SolveError):  # a coil wound solid that is pulled may have none: it stays between its ends
+                _, state = press(state, law, None, np.zeros(1), RULE, True, temperature)
             travel = float(state.travel[0])
         found |= {"free_length_after_mm": length - travel, "set_mm": travel}
     if case.working is not None:

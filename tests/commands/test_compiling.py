@@ -125,7 +125,7 @@ from coilset.model.design.surrogate import guess
 from coilset.scripts.precompile import PRESSED, _run, short_case, warm
 
 def used():
-    kernels = [thing for thing in gc.get_objects() if isinstance(thing, Dispatcher)]
+    kernels = [thing for thing in gc.get_objects() if issubclass(type(thing), Dispatcher)]  # no proxy is asked
     return {f"{kernel.py_func.__qualname__} {signature}" for kernel in kernels for signature in kernel.overloads}
 
 """

@@ -210,7 +210,7 @@ def test_each_step_can_be_slid_to(folder, page):
     height = [float(label.split(": ")[1].split()[0]) for label in shown.labels[1:]]
     assert height == pytest.approx(run.data["travel_mm"].values, rel=1e-3, abs=1e-3)
     around = shear_around(run).mean(axis=2)
-    for moment, snapshot in ((4, 1), (6, 2)):
+    for moment, snapshot in ((4, 1),):  # the last one is of the spring that nothing holds
         assert np.array_equal(shown.x[moment], run.data["position"].values[snapshot])
         assert shown.shear[moment] == pytest.approx(around[snapshot], rel=1e-6, abs=1e-4)  # single precision
     few = frames(run, 4)
