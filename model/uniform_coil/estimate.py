@@ -77,8 +77,8 @@ def estimate(case: Case, spring: Spring, law: Law) -> Estimate:
     if force == 0.0 or abs(force) < FREE * abs(greatest):
         if case.release == "free":
             with suppress(SolveError):  # a coil wound solid that is pulled may have none: it stays between its ends
-                _, state = press(state, law, None, np.zeros(1), RULE, True, temperature)
-            travel = float(state.travel[0])
+                _, freed = press(state, law, None, np.zeros(1), RULE, True, temperature)
+                state, travel = freed, float(freed.travel[0])
         found |= {"free_length_after_mm": length - travel, "set_mm": travel}
     if case.working is not None:
         found |= _working(case.working, state, law, free, temperature, length)
