@@ -6,7 +6,7 @@ from typing import Any
 
 from coilset.model.results.files.opened import is_turned
 
-REMARKS = {"elastic warping", "estimate", "not determined", "earlier name", "presetting", "measured axis"}
+REMARKS = {"elastic warping", "estimate", "not determined", "earlier name", "presetting", "measured axis", "leans"}
 """Warnings that are no failed check."""
 COARSE = "contact mesh"
 LOAD, FORMULAS, WIRE = "load program", "gaps between the coils", "permissible stress"

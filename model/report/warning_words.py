@@ -23,6 +23,7 @@ KINDS = {
     "index": "the spring index D/d is outside the usual range",
     "initial rate": "the initial rate could not be computed",
     "initial tension": "few steps show the initial tension",
+    "leans": "the axis of the spring leans",
     "lift-off": "an end lifts off its seat",
     "not determined": "the tests of the wire do not determine all its constants",
     "peened layer": "the integration points are too coarse for the peened layer",

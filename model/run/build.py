@@ -1,5 +1,6 @@
 """From a case to the parts of its analysis: mesh and rod, heat, Newton's method, control, continuation, records."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -12,6 +13,7 @@ from coilset.meshes.springs.placement import Placement, chord_placement, refuse_
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.head_freedoms import DamperSpec, HeadsSpec
+from coilset.model.case.loading import is_pressed
 from coilset.model.case.phases import Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.contact.base import Contact
@@ -36,7 +38,7 @@ from coilset.model.run.contact_fineness import coarse_mesh_warnings
 from coilset.model.run.effort import Effort, machine_memory
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.outlined_section import Outlined
-from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.buckling import buckling_travel, seating_of
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_allowed, case_elastic, case_strength
 
@@ -200,7 +202,8 @@ def build_setup(
     )
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
     elastic = case_elastic(case, law)
-    buckling = buckling_travel(spring, elastic.shear_modulus / elastic.young_modulus)
+    ratio = elastic.shear_modulus / elastic.young_modulus
+    buckling = buckling_travel(spring, ratio, seating_of(case)) if is_pressed(case, spring) else math.inf
     return Setup(
         spring=spring,
         material=law.name,

@@ -126,6 +126,7 @@ class LoadHistory:
         self.program = LoadProgram(self.control, self.continuation)
         self.setup = build_setup(case, spring, wire, kinds, coiling_diameter)
         self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.stability, detailed)
+        self.continuation.overshoots = self.recorder.overshoots
 
     @property
     def result(self) -> Result:

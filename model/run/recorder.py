@@ -16,7 +16,7 @@ from coilset.model.equilibrium.path.program import StepTaken
 from coilset.model.equilibrium.path.stability import Stability, Weakest
 from coilset.model.equilibrium.system.heads import Heads
 from coilset.model.equilibrium.system.system import System
-from coilset.model.results.records.buckling import axis_offset, buckling
+from coilset.model.results.records.buckling import State, axis_offset, buckling, is_skipped
 from coilset.model.results.records.record import (
     BucklingMode,
     Frame,
@@ -135,7 +135,7 @@ class Recorder:
             negative_pivots=outcome.negative_pivots,
             left_branch=int(outcome.left_branch),
             released_energy_Nmm=outcome.released,
-            axis_offset_mm=axis_offset(x, self.rod.line.stations, self.setup.turns),
+            axis_offset_mm=self._axis_offset(x),
             least_eigenvalue=weakest.value if weakest else None,
             plastic_work_max_N_per_mm2=self._greatest_plastic_work(),
             lift_off_mm=lift_off,
@@ -149,15 +149,22 @@ class Recorder:
             torque_Nmm=self.control.torque,
         )
 
-    def _announce(self, before: Result) -> None:
-        """Log the warnings that the last step has brought; `before` is the result without it.
+    def _axis_offset(self, x: np.ndarray) -> float:
+        return axis_offset(x, self.rod.line.stations, self.setup.turns)
 
-        All eigenvalues are needed to detect buckling; other new warnings show in the last two steps.
-        """
+    def overshoots(self) -> str | None:
+        """Why the step to the trial state shall be shorter: the spring buckles in it; None if not; collective."""
+        travel = self.setup.spring.free_length - self.control.trial_height
+        trial = State(travel, self.control.trial_force, self._axis_offset(self.layout.gather(self.rod.x)))
+        if is_skipped(self.result.steps, trial, self.setup.mean_diameter):
+            return "the spring buckles in this step, and shorter ones show where"
+        return None
+
+    def _announce(self, before: Result) -> None:
+        """Log the warnings that the last step has brought; `before` is the result without it."""
         if self._warned is None:
             self._warned = {warning.name for warning in step_warnings(self.setup, before)}
-        steps = self.result.steps if self.setup.slender else self.result.steps[-2:]
-        for warning in step_warnings(self.setup, Result(steps, snapshots=self.result.snapshots[:1])):
+        for warning in step_warnings(self.setup, self.result):
             if warning.name not in self._warned:
                 log.warning("warning: %s", warning.message)
                 self._warned.add(warning.name)

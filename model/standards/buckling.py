@@ -5,10 +5,13 @@ from math import inf, pi, sqrt
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.case import Case
 from coilset.model.standards.rate import WireNumbers
 from coilset.model.standards.wires.steel import STEEL
 
 SEATING = 0.5  # EN 13906-1: seating coefficient ν of ends guided by parallel seats
+TILTING = {0: SEATING, 1: 0.7, 2: 1.0}  # ν by the number of ends that tilt freely; Euler's columns
+SWAYING = {0: 1.0, 1: 2.0, 2: inf}  # the same if an end moves sideways, too; with two it gives way at once
 
 
 def critical_travel(
@@ -31,7 +34,7 @@ def critical_travel(
         length: free length L0, mm.
         diameter: mean diameter D, mm.
         bending: G/E, or G J/(2 E I₂) of wire that is not round.
-        seating: ν of the standard, 0.5 for ends on parallel guided seats, 2 for one free end.
+        seating: ν of the standard, 0.5 for ends on parallel guided seats, 2 for one free end; see `seating_of`.
         shear: G J/(2 E I₃); None: as bending.
     """
     γ = 1 - (bending if shear is None else shear)
@@ -39,14 +42,26 @@ def critical_travel(
     return length * 0.5 / γ * (1 - sqrt(under_root)) if under_root >= 0 else inf
 
 
-def buckling_travel(spring: Spring, modulus_ratio: float = STEEL.shear_modulus / STEEL.young_modulus) -> float:
-    """Travel at which a spring buckles between parallel seats by `critical_travel`, mm; infinite if it never does.
+def seating_of(case: Case) -> float:
+    """ν of a case's ends; an end that is held by a spring counts as free, which is on the safe side."""
+    ends = case.clamps if case.ends == "clamped" else case.seats
+    heads = (ends.bottom, ends.top)
+    tilting = sum(head.tilt != "held" for head in heads)
+    sways = any(head.sideways != "held" for head in heads)
+    return (SWAYING if sways else TILTING)[tilting]
+
+
+def buckling_travel(
+    spring: Spring, modulus_ratio: float = STEEL.shear_modulus / STEEL.young_modulus, seating: float = SEATING
+) -> float:
+    """Travel at which a spring buckles by `critical_travel`, mm; infinite if it never does.
 
     Seats do not press a spring with hooks or arms: it is infinite.
 
     Args:
         spring: `Spring`; its minimum mean diameter is used.
         modulus_ratio: G/E.
+        seating: ν of its ends.
     """
     if spring.has_tails:
         return inf
@@ -54,5 +69,5 @@ def buckling_travel(spring: Spring, modulus_ratio: float = STEEL.shear_modulus /
     if spring.section is not None:
         wire = WireNumbers.of(spring.section, float(spring.wire_diameter(0.5 * spring.turns)), diameter)
         bending, shear = wire.buckling_ratios(modulus_ratio)
-        return critical_travel(spring.free_length, diameter, bending, shear=shear)
-    return critical_travel(spring.free_length, diameter, modulus_ratio)
+        return critical_travel(spring.free_length, diameter, bending, seating, shear)
+    return critical_travel(spring.free_length, diameter, modulus_ratio, seating)

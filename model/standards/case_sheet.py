@@ -8,6 +8,7 @@ from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.case import Case
 from coilset.model.case.loading import pulls, rotations
+from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
 from coilset.model.standards.from_results import Found
@@ -70,6 +71,7 @@ def case_sheet(
         beyond=tails_compliance(spring, E, G, bool(turns_to)),
         hook_stress=hook_stress(spring) if pulled else 0.0,
         on_point=OnPoint.of(spring, E, G),
+        seating=seating_of(case),
     )
     if lengths:
         return made

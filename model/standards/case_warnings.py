@@ -12,6 +12,7 @@ from coilset.model.case.phases import TimePhase
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.own import OwnLaw
 from coilset.model.standards import en13906
+from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.sheet import Sheet, working_lengths
@@ -41,7 +42,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         *warm_warnings(case, law, None if isinstance(case.material, str) else case.material.wire),
         *_supports(case, spring),
         *_warping(case, spring, law),
-        *spring_warnings(spring, elastic, is_pressed(case, spring)),
+        *spring_warnings(spring, elastic, is_pressed(case, spring), seating_of(case)),
         *_working(case, spring, elastic),
     )
 

@@ -118,10 +118,10 @@ class Cylinder:
         """Greatest shear stress in the coil over the nominal one."""
         return self.wire.correction if self.wire else en13906.stress_correction(self.index)
 
-    def buckling_travel(self, modulus_ratio: float) -> float:
-        """Travel at which it buckles between parallel seats, mm, with G/E; infinite if it never does."""
+    def buckling_travel(self, modulus_ratio: float, seating: float) -> float:
+        """Travel at which it buckles, mm, with G/E and the coefficient ν of its ends; infinite if it never does."""
         bending, shear = self.wire.buckling_ratios(modulus_ratio) if self.wire else (modulus_ratio, None)
-        return critical_travel(self.length, self.D, bending, shear=shear)
+        return critical_travel(self.length, self.D, bending, seating, shear)
 
     @property
     def pitch_angle(self) -> float:

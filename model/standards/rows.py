@@ -227,8 +227,8 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
         force,
         _why_block(sheet),
     )
-    travel = s.buckling_travel(e.shear_modulus / e.young_modulus)
-    formula = f"Haringx, ν = 0.5; to block {s.length - solid:.4g} mm"
+    travel = s.buckling_travel(e.shear_modulus / e.young_modulus, sheet.seating)
+    formula = f"Haringx, ν = {sheet.seating:g}; to block {s.length - solid:.4g} mm"
     never = "never buckles by the formula"
     why = "with its pitch, end turns and coils that touch, which the formula neglects" if isfinite(travel) else never
     yield Row(

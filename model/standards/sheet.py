@@ -8,6 +8,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
 from coilset.model.standards import en13906, en15800, goodman
+from coilset.model.standards.buckling import SEATING
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.from_results import Found
 from coilset.model.standards.rate import OnPoint
@@ -39,6 +40,7 @@ class Sheet:
         tension: initial tension F0 of coils wound onto each other, N.
         beyond: compliance of hooks, mm/N, or of arms, rad/(N mm).
         hook_stress: greatest stress along the wire of the hooks for 1 N, MPa; 0 without hooks.
+        seating: coefficient ν of the ends, by which it buckles.
         on_point: of a torsion spring with an arm on a point; None of others.
     """
 
@@ -60,6 +62,7 @@ class Sheet:
     beyond: float = 0.0
     hook_stress: float = 0.0
     on_point: OnPoint | None = None
+    seating: float = SEATING
 
     @property
     def rate(self) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from coilset.meshes.springs.checks import TOUCH, coil_distances
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.warning import Warning
-from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.buckling import SEATING, buckling_travel
 from coilset.model.standards.wires.steel import STEEL, Elastic
 
 INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
@@ -17,17 +17,20 @@ TIP_LEAST = 0.25  # of the wire diameter
 OFFSET_USUAL, TILT_USUAL = 0.1, 0.5  # of the wire diameter, and degrees: beyond, a scan was not set up on its axis
 
 
-def spring_warnings(spring: Spring, elastic: Elastic = STEEL, pressed: bool = True) -> list[Warning]:
+def spring_warnings(
+    spring: Spring, elastic: Elastic = STEEL, pressed: bool = True, seating: float = SEATING
+) -> list[Warning]:
     """All warnings about the unloaded spring itself.
 
     Args:
         spring: the spring.
         elastic: moduli of its material, on whose ratio the travel to buckling depends.
         pressed: whether it is a compression spring: others do not buckle.
+        seating: seating coefficient ν of its ends.
     """
     checks = (_wire, _index, _solid_coils, _active, _ground, _axis)
     found = [warning for check in checks for warning in check(spring)]
-    return [*found, *_buckling(spring, elastic)] if pressed else found
+    return [*found, *_buckling(spring, elastic, seating)] if pressed else found
 
 
 def _wire(spring: Spring) -> Iterator[Warning]:
@@ -141,15 +144,16 @@ def _axis(spring: Spring) -> Iterator[Warning]:
         yield Warning("measured axis", "spring.file", text, axis.tilt, TILT_USUAL, "degrees")
 
 
-def _buckling(spring: Spring, elastic: Elastic) -> Iterator[Warning]:
+def _buckling(spring: Spring, elastic: Elastic, seating: float) -> Iterator[Warning]:
     travel = spring.free_length - spring.block_height
-    limit = buckling_travel(spring, elastic.shear_modulus / elastic.young_modulus)
+    limit = buckling_travel(spring, elastic.shear_modulus / elastic.young_modulus, seating)
+    ends = "on parallel seats" if seating == SEATING else f"between its ends (ν = {seating:g})"
     if limit < travel:
         slender = spring.free_length / float(2 * np.min(spring.mean_radius(spring.breaks)))
         yield Warning(
             "buckling",
             "spring.free_length",
-            f"slender, L0/D = {slender:.3g}: without a guide it buckles on parallel seats at "
+            f"slender, L0/D = {slender:.3g}: without a guide it buckles {ends} at "
             f"{limit:.3g} mm of travel, before block at {travel:.3g} mm (EN 13906-1)",
             limit,
             travel,

@@ -11,6 +11,7 @@ from coilset.model.base.errors import CoilsetError, InputError, naming
 from coilset.model.case import read_case
 from coilset.model.case.loading import is_pressed
 from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
+from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.spring_data import spring_data
 from coilset.model.standards.spring_warnings import spring_warnings
 from coilset.model.standards.wires.law import case_elastic, case_law
@@ -51,7 +52,7 @@ def mesh(
     refuse_to_replace([folder / name for name in DRAWN if pictures] + [Path(path) for path in write], force)
     rows = ((label, f"{value} {unit}".strip()) for label, value, unit in spring_data(spring, elastic))
     console.pairs([*rows, ("elements", str(len(turns) - 1))])
-    for warning in spring_warnings(spring, elastic, is_pressed(case, spring)):
+    for warning in spring_warnings(spring, elastic, is_pressed(case, spring), seating_of(case)):
         console.warn(warning.message)
     for path in write:
         make(Path(path).parent)

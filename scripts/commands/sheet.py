@@ -19,6 +19,7 @@ from coilset.model.figures.png import write_png
 from coilset.model.report.document.words import Language, Words
 from coilset.model.results.files.folder import make, refuse_to_replace
 from coilset.model.standards import from_results, goodman
+from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.case_warnings import sheet_warnings, warm_warnings
 from coilset.model.standards.en15800 import GRADES
@@ -208,7 +209,7 @@ def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
 def _warnings(case: Case, spring: Spring, made: Sheet) -> list[Warning]:
     cylinder = made.spring
     warm = warm_warnings(case, case_law(case, spring), made.wire.name if made.wire else None)
-    own = spring_warnings(spring, made.elastic, is_pressed(case, spring))
+    own = spring_warnings(spring, made.elastic, is_pressed(case, spring), seating_of(case))
     warnings = [*warm, *own, *sheet_warnings(made, [cylinder.solid])]
     set_mm = made.at_run("set_mm")
     if set_mm and made.was_at_block and not (made.pulled or made.turns_to):  # any other run is no presetting

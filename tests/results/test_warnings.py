@@ -97,13 +97,28 @@ def test_warnings_of_steps(lifted):
         assert next(one for one in found if one.name == name).place.startswith("step 2, ") or name == "buckled"
 
 
-@pytest.mark.parametrize(
-    ("critical", "words"), [(12.0, "the spring buckled at"), (math.inf, "coils gave way sideways at")]
-)
-def test_a_spring_too_short_to_buckle_has_coils_that_give_way(lifted, critical, words):
-    step = Step(1, 0, 1.0, 30.0, 5.0, 100.0, 3, 4, 0, 0, 2, 0.0, negative_pivots=1)
-    found = step_warnings(replace(lifted.setup, buckling_travel=critical), Result(steps=(step,)))
-    assert next(one.message for one in found if one.name == "buckled").startswith(f"{words} a travel of 5 mm and 100 N")
+def test_a_spring_that_buckles_is_told_from_one_that_leans(lifted):
+    """The standard's travel beside it, which is that of elastic wire; the axis of a side-load spring is drawn so."""
+    D = lifted.setup.mean_diameter
+    step = Step(1, 0, 1.0, 30.0, 5.0, 100.0, 3, 4, 0, 0, 2, 0.0)
+    aside = replace(step, number=2, travel_mm=5.1, force_N=101.0, axis_offset_mm=0.1 * D)
+
+    def found(*steps, **changes):
+        result = replace(lifted.result, steps=steps)
+        names = ("buckled", "leans")
+        return [one for one in run_warnings(replace(lifted.setup, **changes), result) if one.name in names]
+
+    for limit, words in ((12.0, "at 12 mm"), (math.inf, "never, as long as the wire is elastic")):
+        (one,) = found(step, replace(aside, left_branch=1), buckling_travel=limit)
+        assert (one.name, one.value) == ("buckled", 5.0)
+        assert f"buckled at a travel of 5 mm and 100 N, and its axis went up to {0.1 * D:.3g} mm aside" in one.message
+        assert f"(EN 13906-1: {words})" in one.message
+    (one,) = found(step, aside)
+    assert (one.name, one.value) == ("leans", 0.1 * D)
+    assert f"its axis is up to {0.1 * D:.3g} mm aside, at a travel of 5.1 mm, 10 % of its mean diameter" in one.message
+    side_load = copy.copy(lifted.setup.spring)
+    object.__setattr__(side_load, "axis", ())
+    assert found(step, aside, spring=side_load) == []
 
 
 def test_creep_beyond_its_tests(lifted):

@@ -1,12 +1,15 @@
 """Formulas of EN 13906-1 against printed sheets of springs and against derivations that do not use them."""
 
+from math import inf
+
 import numpy as np
 import pytest
 from catalogue import CATALOGUE, G
 from derivations import E, closed_helix, haringx, helix_compliance, ν
 
+from coilset.model.case import check
 from coilset.model.standards import en13906
-from coilset.model.standards.buckling import critical_travel
+from coilset.model.standards.buckling import critical_travel, seating_of
 from coilset.model.standards.rate import pitch_compliance
 
 
@@ -97,3 +100,22 @@ def test_pitch_compliance_to_the_second_order():
     assert pitch_compliance(0.1, ν) == pytest.approx(1 + t**2 * (1 - ν) / (2 * (1 + ν)), abs=t**4)
     assert pitch_compliance(0.1, ν, "held") == pytest.approx(1 + t**2 * (0.5 - ν), abs=t**4)
     assert pitch_compliance(0.1, ν) > 1.002
+
+
+@pytest.mark.parametrize(
+    ("ends", "expected"),
+    [
+        ({}, 0.5),
+        ({"ends": "clamped"}, 0.5),
+        ({"ends": "clamped", "heads": {"top": {"tilt": "free"}}}, 0.7),
+        ({"ends": "clamped", "heads": {"top": {"tilt": "free"}, "bottom": {"tilt": "free"}}}, 1.0),
+        ({"ends": "clamped", "heads": {"top": {"sideways": "free"}}}, 1.0),
+        ({"ends": "clamped", "heads": {"top": {"sideways": "free", "tilt": "free"}}}, 2.0),
+        ({"seats": {"hold": "groove", "top": {"tilt": 5.0}}}, 0.7),
+        ({"seats": {"hold": "groove", "top": {"tilt": "free", "sideways": "free"}, "bottom": {"tilt": "free"}}}, inf),
+    ],
+)
+def test_seating_coefficients_are_those_of_the_ends(ends, expected):
+    spring = {"wire_diameter": 2, "mean_diameter": 20, "turns": 16, "pitch": 5}
+    case = check({"spring": spring, "material": "elastic", "loading": [{"to": {"travel": 5}}], **ends})
+    assert seating_of(case) == expected

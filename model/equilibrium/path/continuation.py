@@ -44,6 +44,8 @@ class Continuation:
 
     Attributes:
         refusal: why the trial state is impossible although forces balance, in words; None if it is possible.
+        overshoots: what happens within the step to the trial state and asks for a shorter one, in words; None if
+            nothing does.
         cause: what gives way at the last equilibrium, in words.
         steps: StepSizes, which also hold the position on the path.
         number: of steps so far.
@@ -63,6 +65,7 @@ class Continuation:
         self.penetration_limit, self.starts = penetration_limit, starts
         self.stability, self.negative_pivots, self.step_error = stability, 0, step_error
         self.refusal: Callable[[], str | None] = lambda: None
+        self.overshoots: Callable[[], str | None] = lambda: None
         self.cause: Callable[[], str] = lambda: ""
         self.steps, self.number = StepSizes(self.control), 0
         self.guess = Guess(self.system)
@@ -80,8 +83,10 @@ class Continuation:
 
     def _attempt(self, load: Load, starts: Iterable[Start], size: float = 0.0, accurately: bool = False) -> Outcome:
         began = self.system.evaluations
-        outcome = self._conclude(load, self._stable(self._solve(load, starts), load), size, accurately)
-        self._in_vain += 0 if outcome.converged else self.system.evaluations - began
+        solved = self._stable(self._solve(load, starts), load)
+        judged = self._short_enough(solved, size)
+        outcome = self._conclude(load, judged, size, accurately)
+        self._in_vain += 0 if outcome.converged or judged is not solved else self.system.evaluations - began
         return outcome
 
     def _newton(self, load: Load, start: Start) -> Outcome:
@@ -191,6 +196,14 @@ class Continuation:
             return replace(outcome, converged=False, reason=reason, refused=True)
         if outcome.converged and (refusal := self.refusal()) is not None:
             return replace(outcome, converged=False, reason=refusal, refused=True)
+        return outcome
+
+    def _short_enough(self, outcome: Outcome, size: float) -> Outcome:
+        """Reject an equilibrium beyond something that a shorter step shows, as long as a step may be cut for that."""
+        if outcome.converged and not self.steps.is_near_unstable(size):
+            reason = self.overshoots()
+            if reason is not None:
+                return replace(outcome, converged=False, reason=reason, refused=True)
         return outcome
 
     def _judged_by(self, estimate: Estimate, outcome: Outcome, size: float, accurately: bool) -> Outcome:

@@ -224,11 +224,13 @@ class Summary:
     material: str = entry("", "name of the law", in_slice=True)
     ends: str = entry("", "`seats` or `clamped`", in_slice=True)
     unstable_steps: int = entry("", "steps that ended in an unstable state")
-    buckled: bool = entry("", "whether the spring left its axis")
+    buckled: bool = entry("", "whether the spring buckled: became unstable, passed a maximum of its force, or bowed")
     buckling_travel_mm: float | None = entry("mm", "travel at which it did")
-    buckling_force_N: float | None = entry("N", "force at which it did")
+    buckling_force_N: float | None = entry("N", "force there")
     buckling_travel_EN_13906_1_mm: float | None = entry(
-        "mm", "travel at which it should by EN 13906-1; `null` if never"
+        "mm",
+        "travel at which it should by EN 13906-1 with these ends, if elastic; `null` if never, or if it is not "
+        "compressed",
     )
     elements: int = entry("", "rods along the wire", in_slice=True)
     section_kind: str = entry("", "`plane`, `curved` or `warping`")

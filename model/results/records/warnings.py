@@ -6,7 +6,7 @@ from math import isfinite
 
 from coilset.model.base.warning import Warning
 from coilset.model.results.fatigue import fatigue_warnings
-from coilset.model.results.records.buckling import buckling, snapped
+from coilset.model.results.records.buckling import SIDEWAYS, buckling, leaning, snapped
 from coilset.model.results.records.labels import CAUSES, NUMBERS
 from coilset.model.results.records.rates import FEW, tensions
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
@@ -140,12 +140,11 @@ def _penetration(setup: Setup, result: Result) -> Iterator[Warning]:
 def _buckled(setup: Setup, result: Result) -> Iterator[Warning]:
     found, limit = buckling(result.steps, setup.mean_diameter), setup.buckling_travel
     if found is not None:
-        where = f"at a travel of {found.travel_mm:.4g} mm and {found.force_N:.4g} N"
+        formula = f"at {limit:.4g} mm" if isfinite(limit) else "never, as long as the wire is elastic"
         message = (
-            f"the spring buckled {where} (EN 13906-1: at {limit:.4g} mm); the results beyond are for the buckled shape"
-            if isfinite(limit)
-            else f"coils gave way sideways {where}, though a spring as short as this never buckles as a whole "
-            "(EN 13906-1); the results beyond are for the shape they took"
+            f"the spring buckled at a travel of {found.travel_mm:.4g} mm and {found.force_N:.4g} N, and its axis went "
+            f"up to {found.offset_mm:.3g} mm aside (EN 13906-1: {formula}); the results beyond are for the buckled "
+            "shape"
         )
         place = f"travel {found.travel_mm:.4g} mm"
         yield Warning("buckled", place, message, found.travel_mm, limit if isfinite(limit) else None, "mm")
@@ -182,6 +181,19 @@ def _place(step: Step) -> str:
 
 
 # ---- from what was found ---------------------------------------------------------------------------------------------
+
+
+def _leans(setup: Setup, result: Result) -> Iterator[Warning]:
+    if setup.spring.axis is not None or is_turned(setup, result.steps):  # drawn so, or pushed aside by its arms
+        return
+    far = leaning(result.steps, setup.mean_diameter)
+    if far is not None:
+        offset, place = far.axis_offset_mm, _place(far)
+        message = (
+            f"the spring leans without buckling: its axis is up to {offset:.3g} mm aside, at a travel of "
+            f"{far.travel_mm:.4g} mm, {100.0 * offset / setup.mean_diameter:.2g} % of its mean diameter"
+        )
+        yield Warning("leans", place, message, offset, SIDEWAYS * setup.mean_diameter, "mm")
 
 
 def _strength(setup: Setup, result: Result) -> Iterator[Warning]:
@@ -397,6 +409,7 @@ FOUND: tuple[Check, ...] = (
     _errors,
     _presetting,
     _longer,
+    _leans,
     _tension,
     working_warnings,
     fatigue_warnings,

@@ -3,9 +3,9 @@
 Wire 5, D 40, pitch 12, elastic, 16 rods per turn as by default (with 8, that of L0/D = 6 buckles 0.7 % later). Seats
 hold the wire's tips sideways and against rotation, unless a case says otherwise, and stay parallel. A spring between
 them therefore buckles as it does between clamped heads, with the coefficient ½ of EN 13906-1, and both are compared
-with Haringx's clamped column (`references/stability.py`). What is judged is the travel at which the lowest eigenvalue
-vanishes, as reported by a run (`model/results/records/buckling.py`). The numbers of turns include whole and fractional
-ones; with a fractional number the ends push the axis to one side from the start.
+with Haringx's clamped column (`references/stability.py`). What is judged is the travel at which a run reports that the
+spring buckled (`model/results/records/buckling.py`). The numbers of turns include whole and fractional ones; with a
+fractional number the ends push the axis to one side from the start.
 
 Beyond that travel the stable branch is drawn: the force hardly rises while the axis deflects.
 
@@ -20,7 +20,7 @@ from coilset.model.base.errors import SolveError
 from coilset.model.base.style import STYLE
 from coilset.model.case import check
 from coilset.model.material import library
-from coilset.model.results.records.buckling import critical_travel
+from coilset.model.results.records.buckling import Buckling, buckling
 from coilset.model.results.records.record import Step
 from coilset.model.run.analysis import Analysis
 from coilset.verification.references.stability import clamped_spring
@@ -52,6 +52,14 @@ def press(length: float, ends: str, travel: float) -> tuple[Step, ...]:
     return steps
 
 
+def buckled(steps: tuple[Step, ...]) -> Buckling:
+    """Where it buckled, as it must."""
+    found = buckling(steps, DIAMETER)
+    if found is None:
+        raise SolveError("the spring did not buckle")
+    return found
+
+
 def run(study: Study) -> None:
     """Critical travels, and the branches that are stable."""
     law, found, exact = library.load("elastic"), {}, {}
@@ -61,8 +69,8 @@ def run(study: Study) -> None:
         for ends in ENDS:
             found[ratio, ends] = steps = press(length, ends, BEYOND * exact[ratio][0])
             what = f"travel at which it buckles, L0/D = {ratio}, {ends}, mm"
-            study.check(what, critical_travel(steps), exact[ratio][0], "Haringx", TOLERANCE)
-    rows = [[ratio, exact[ratio][0], *(critical_travel(found[ratio, ends]) for ends in ENDS)] for ratio in RATIOS]
+            study.check(what, buckled(steps).travel_mm, exact[ratio][0], "Haringx", TOLERANCE)
+    rows = [[ratio, exact[ratio][0], *(buckled(found[ratio, ends]).travel_mm for ends in ENDS)] for ratio in RATIOS]
     study.table("critical travel, mm", ["L0/D", "Haringx", *ENDS], rows)
     draw(study, found, exact)
 
@@ -84,7 +92,7 @@ def draw(study: Study, found: dict[tuple[int, str], tuple[Step, ...]], exact: di
                     color=f"C{k}",
                     label=f"L0/D = {ratio}, {ends}",
                 )
-            axes.axvline(critical_travel(found[ratio, "clamped"]), color=f"C{k}", lw=0.7, ls=":")
+            axes.axvline(buckled(found[ratio, "clamped"]).travel_mm, color=f"C{k}", lw=0.7, ls=":")
             axes.plot(*exact[ratio], "k+", ms=10, label="Haringx" if k == 0 else None)
         axes.set(xlabel="travel in mm", ylabel="force in N", title="Slender springs, pressed until they buckle")
         axes.grid(lw=0.3)
