@@ -3,8 +3,8 @@
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
 those of the n stations come x, y, z and rotations θx, θy, θz of the bottom and of the top seat, 3 n + j, and after
 these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Every rank evaluates the contacts that act
-on its own degrees of freedom: those of its part of the wire, and those of other parts near it. It gets the
-positions that these depend on, see coilset.model.equilibrium.system.halo.
+on its own degrees of freedom: those of its part of the wire, and those of other parts near it, see
+coilset.model.equilibrium.system.nearby.
 
 Every kind is a `Contact`.
 """
@@ -60,22 +60,15 @@ class Memory:
         self.state[name].trial[...] = values
 
 
-@dataclass(frozen=True)
-class Known:
-    """The part of the wire whose positions a rank has.
+class Part(NamedTuple):
+    """The part of the wire on which a rank evaluates contacts: its own and what is near it.
 
     Attributes:
-        elements: ranges of elements of which all stations of the centre line's cubics are known, ascending, shape
-            (k, 2).
-        longest: distance of neighbouring stations, the maximum along the whole wire, mm.
-        way: by how much any two stations of the whole wire may have moved against each other so far, mm: the sum of
-            the diagonals of the boxes around the motions from each trial state to the next.
+        elements: ranges of elements, ascending, shape (k, 2).
         own: which stations are the rank's own, shape (n,), bool.
     """
 
     elements: np.ndarray
-    longest: float
-    way: float
     own: np.ndarray
 
 
@@ -87,18 +80,17 @@ class TrialPositions(NamedTuple):
         seats: x, y, z and rotation vector of the bottom seat, then of the top seat, shape (12,), mm and rad.
         rotations: rotation vectors of the stations since the last equilibrium, shape (n, 3), rad, or None if no contact
             needs them.
-        known: the part of the wire whose positions and rotations are known, or None if it is all of it. Rows of the
-            other stations have no meaning.
+        part: the part of the wire on which contacts are evaluated, or None if it is all of it.
     """
 
     x: np.ndarray
     seats: np.ndarray
     rotations: np.ndarray | None = None
-    known: Known | None = None
+    part: Part | None = None
 
     def points(self, points: WirePoints) -> np.ndarray:
-        """Numbers of those of the wire's points whose positions are known."""
-        return points.numbers if self.known is None else points.of(self.known.elements)
+        """Numbers of those of the wire's points at which contacts are evaluated."""
+        return points.numbers if self.part is None else points.of(self.part.elements)
 
 
 @dataclass(frozen=True)

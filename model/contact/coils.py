@@ -15,9 +15,9 @@ from coilset.model.contact.elements import PAIR, Bedding, Pressed, coil_elements
 from coilset.model.contact.gauge import extremes, gauge_table
 from coilset.model.contact.search import (
     PLACES,
-    KnownPart,
     Locations,
     Points,
+    Searched,
     longest_element,
     near_locations,
     place,
@@ -94,7 +94,7 @@ class Coils(Contact):
             np.empty(0, np.int64),
             none,
         )
-        self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
+        self._clear: tuple[np.ndarray, float] | None = None  # where all gaps were greater than a distance
         self._last: tuple[TrialPositions, Pressed] | None = None  # of the last evaluation, for friction
 
     def places(self, pair: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -104,15 +104,15 @@ class Coils(Contact):
 
     def near(self, trial: TrialPositions, margin: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pairs of points and locations nearer than `margin`, see `near_locations`, and the points' positions."""
-        points, known = self.points, trial.known
+        points, part = self.points, trial.part
         p, active = np.empty((len(points), 3)), trial.points(points)
         self._y[:, :3] = trial.x
-        elements = self._all_elements if known is None else known.elements
-        longest = longest_element(self._y) if known is None else known.longest
+        elements = self._all_elements if part is None else part.elements
+        searched = Searched(elements, self._widest, longest_element(self._y))
         while True:
             pair, where = np.empty((self._room, 3), np.int64), np.empty((self._room, 2))
-            out, part = Locations(p, pair, where), KnownPart(elements, self._widest, longest)
-            found = near_locations(active, self._points, self._curve, margin, part, out)
+            out = Locations(p, pair, where)
+            found = near_locations(active, self._points, self._curve, margin, searched, out)
             if found <= self._room:
                 return pair[:found], where[:found], p
             self._room = 2 * found
@@ -134,7 +134,7 @@ class Coils(Contact):
         margin = greatest(offsets) + lift
         if self._clear is not None:
             there, clearance = self._clear
-            if self._amplification * moved(there, trial) < clearance - margin:
+            if self._amplification * relative_motion(there, trial.x) < clearance - margin:
                 return NO_PAIR
         pair, where, p = self.near(trial, margin + self._skin)
         offset = np.empty(len(pair))
@@ -142,11 +142,11 @@ class Coils(Contact):
         count, least = keep_pressing(self.points.turns, self.points.line.turns, raised, pair, where, offset)
         clearance, self._clear = min(margin + self._skin, least), None
         if clearance > margin:
-            self._clear = TrialPositions(trial.x.copy(), trial.seats, None, trial.known), clearance
+            self._clear = trial.x.copy(), clearance
             return NO_PAIR
         pair, where, offset = pair[:count], where[:count], offset[:count] - lift
-        if trial.known is not None:
-            own, points = trial.known.own, self.points
+        if trial.part is not None:
+            own, points = trial.part.own, self.points
             ours = (own[points.stations[pair[:, 0]]] | own[points.line.stations[pair[:, 1]]]).any(axis=1)
             pair, where, offset = pair[ours], where[ours], offset[ours]
         return Pressed(pair, where, offset, p)
@@ -186,13 +186,6 @@ def outwards(points: WirePoints, stations: np.ndarray) -> np.ndarray:
     along = np.einsum("mk,mki->mi", slope, stations[points.stations])
     across = np.stack([along[:, 1], -along[:, 0]], axis=1) / np.hypot(along[:, 0], along[:, 1])[:, None]
     return across * np.sign(np.sum(across * points.at(stations)[:, :2], axis=1))[:, None]
-
-
-def moved(there: TrialPositions, here: TrialPositions) -> float:
-    """By how much two stations have moved against each other at most, mm."""
-    if there.known is None or here.known is None:
-        return relative_motion(there.x, here.x)
-    return here.known.way - there.known.way
 
 
 @njit(cache=True)

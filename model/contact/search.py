@@ -232,11 +232,11 @@ class Points(NamedTuple):
     table: np.ndarray
 
 
-class KnownPart(NamedTuple):
-    """The part of a wire whose positions are known.
+class Searched(NamedTuple):
+    """The part of a wire in which is sought.
 
     Attributes:
-        elements: ranges of elements whose four stations are known, shape (k, 2).
+        elements: its ranges, shape (k, 2).
         widest, longest: largest radius and distance of neighbouring stations along the wire, mm.
     """
 
@@ -261,7 +261,7 @@ class Locations(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def near_locations(
-    active: np.ndarray, points: Points, curve: Curve, margin: float, known: KnownPart, out: Locations
+    active: np.ndarray, points: Points, curve: Curve, margin: float, searched: Searched, out: Locations
 ) -> int:
     """All locations where a point of the wire and another coil are closer than `margin`.
 
@@ -270,7 +270,7 @@ def near_locations(
         points: all points.
         curve: the centre line.
         margin: maximum gap, mm.
-        known: the part of the wire whose positions are known.
+        searched: the part of the wire in which is sought.
         out: written.
 
     Returns:
@@ -278,7 +278,7 @@ def near_locations(
     """
     weights, stations, radius, turns, overlap, outward, table = points
     y, station_turns, first, cubic = curve
-    elements, widest, longest = known
+    elements, widest, longest = searched
     p, pair, where = out
     # if elements are much shorter than the wire diameter, only every so many stations are sorted: the posts
     stride = post_stride(widest, longest)

@@ -44,9 +44,9 @@ def pressed(request, example):
 
 
 def nearby(analysis, x, seats, rotations):
-    """The state as a rank knows it."""
+    """The state with what a rank evaluates of it."""
     node = analysis.rod.line.node
-    return analysis.system.touching.halo.trial(x[node], seats, rotations[node])
+    return analysis.system.touching.trial(x[node], seats, rotations[node])
 
 
 def rows(analysis, part):
@@ -76,14 +76,14 @@ def test_each_rank_finds_what_acts_on_its_unknowns(pressed):
         assert COMM.allreduce(counted.closed) == expected.closed
 
 
-@pytest.mark.skipif(COMM.size == 1, reason="one rank knows all")
-def test_a_rank_holds_only_what_is_near(pressed):
+@pytest.mark.skipif(COMM.size == 1, reason="one rank takes all")
+def test_a_rank_evaluates_only_what_is_near(pressed):
     """Beside its own coils some of the next parts; the last rank also the end coil on the other seat."""
     analysis, x, *_ = pressed
     if analysis.case.seats.top.moves:
-        pytest.skip("on a cone the last rank is told of more than the end coil")
-    known = nearby(*pressed).known
-    share = (known.elements[:, 1] - known.elements[:, 0]).sum() / len(x)
+        pytest.skip("on a cone the last rank takes more than the end coil")
+    part = nearby(*pressed).part
+    share = (part.elements[:, 1] - part.elements[:, 0]).sum() / len(x)
     assert 1.0 / COMM.size < share < 1.0 / COMM.size + 0.4 < 1.0
 
 

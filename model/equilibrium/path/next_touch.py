@@ -43,7 +43,7 @@ class NextTouch:
 
         def touching(part: float) -> list[Contribution]:
             rotations = None if turned is None else part * turned
-            trial = system.touching.halo.trial(x + part * u, seats + part * moved, rotations)
+            trial = system.touching.trial(x + part * u, seats + part * moved, rotations)
             return [contact.evaluate(trial) for contact in self._limiting]
 
         after, deep = touching(1.0), DEEP * 2.0 * rod.largest_radius

@@ -8,9 +8,9 @@ from mpi4py import MPI
 
 from coilset.model.base.agreement import max_of_ranks
 from coilset.model.body.lever import Swing
-from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory
-from coilset.model.equilibrium.system.halo import Halo
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory, TrialPositions
 from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.nearby import Nearby
 
 AUGMENTED = "multiplier_offset"  # the part of a memory that `augment` changes
 
@@ -23,20 +23,24 @@ class ContactParts:
         contacts: kinds of contact.
 
     Attributes:
-        halo: Halo.
         need_rotations: whether some kind needs the rotations of the nodes.
         detached: whether only coils touch each other, and no seat, guide or head.
     """
 
     def __init__(self, layout: LineLayout, contacts: Sequence[Contact]) -> None:
         self.layout, self.comm, self.contacts = layout, layout.comm, contacts
-        self.halo = Halo(layout, contacts)
+        self._nearby = Nearby(layout, contacts)
         self.need_rotations = any(contact.needs_rotations for contact in contacts)
         self.detached = False
         self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact.limits_step]
         self._limiting = [contacts[number] for number in self._limiting_numbers]
         self._augmented = [contact for contact in contacts if contact.multiplier_offset is not None]
         self._kept = [contact.memory for contact in contacts if contact.memory is not None]
+
+    def trial(self, x: np.ndarray, seats: np.ndarray, rotations: np.ndarray | None = None) -> TrialPositions:
+        """TrialPositions from those of the local nodes; arguments as for `evaluate`; collective."""
+        x, turned = self.layout.gather(x), None if rotations is None else self.layout.gather(rotations)
+        return TrialPositions(x, seats, turned, self._nearby.part(x, seats))
 
     def evaluate(
         self, x: np.ndarray, seats: np.ndarray, rotations: np.ndarray | None
@@ -51,7 +55,7 @@ class ContactParts:
             For each kind the elements that act on this rank's unknowns; the maximum penetration of coils and seats, mm,
             and the number of closed elements of all ranks.
         """
-        trial = self.halo.trial(x, seats, rotations)
+        trial = self.trial(x, seats, rotations)
         parts = [contact.evaluate(trial) for contact in self.contacts]
         if self.detached:
             pairs = zip(self.contacts, parts, strict=True)
@@ -70,7 +74,7 @@ class ContactParts:
 
     def max_penetration(self, x: np.ndarray, seats: np.ndarray) -> float:
         """Maximum penetration of coils and seats, mm, cheaper than `evaluate`; collective."""
-        trial = self.halo.trial(x, seats)
+        trial = self.trial(x, seats)
         limiting = [contact.max_penetration(trial) for contact in self._limiting if self._acts(contact)]
         deepest = max(limiting, default=0.0)
         return max_of_ranks(self.comm, deepest)
@@ -97,7 +101,7 @@ class ContactParts:
 
     def augment(self, x: np.ndarray, seats: np.ndarray) -> None:
         """Augment the contacts that have penetrated; collective."""
-        trial = self.halo.trial(x, seats)
+        trial = self.trial(x, seats)
         for contact in filter(self._acts, self._augmented):
             contact.augment(trial)
             if contact.memory is not None:
