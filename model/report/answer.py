@@ -105,10 +105,13 @@ def _tension(s: Mapping[str, Any]) -> list[Number]:
         return []
     after = s["initial_tension_after_N"]
     of_after = s.get("estimated_initial_tension_after_error_N")
+    given = "" if s.get("initial_tension_given_N") is None else f"wound with {s['initial_tension_given_N']:.5g} N"
     left = "" if after is None else f"{_within(after, of_after, 'N', 1)} after the last release"
     rate = with_unit(s["open_rate_N_per_mm"], "N/mm", 3)
     of_first = s.get("estimated_initial_tension_error_N")
-    held = Number("initial tension", _within(s["initial_tension_N"], of_first, "N", 1), left)
+    held = Number(
+        "initial tension", _within(s["initial_tension_N"], of_first, "N", 1), "; ".join(filter(None, (given, left)))
+    )
     return [held, Number("rate, coils open", rate), *_beyond_coil(s, "hooks")]
 
 
@@ -128,10 +131,13 @@ def _turned(s: Mapping[str, Any]) -> list[Number]:
     inside, outside = (with_unit(s[f"residual_bending_{side}_MPa"], "MPa", 1) for side in ("inside", "outside"))
     rate = with_unit(s["turn_rate_Nmm_per_deg"], "N mm/°", 3)
     after = s["turn_rate_after_Nmm_per_deg"]
+    of_set, of_torque = s.get("estimated_turn_set_error_deg"), s.get("estimated_torque_error_Nmm")
+    if s.get("torque_max_is_given"):
+        of_torque = None
     return [
-        Number("set", with_unit(s["turn_set_deg"], "°", 2, "none"), f"of {s['turn_max_deg']:.4g}° of rotation"),
+        Number("set", _within(s["turn_set_deg"], of_set, "°", 2), f"of {s['turn_max_deg']:.4g}° of rotation"),
         Number("residual bending stress", inside, f"inside of the coil; {outside} outside; positive in tension"),
-        Number("maximum torque", with_unit(s["torque_max_Nmm"], "N mm", 0)),
+        Number("maximum torque", _within(s["torque_max_Nmm"], of_torque, "N mm", 0), _errors(s)),
         Number(
             "maximum bending stress",
             with_unit(s["max_bending_inside_MPa"], "MPa", 0),
@@ -162,9 +168,10 @@ def _within(value: float | None, error: float | None, unit: str, digits: int) ->
 
 def _errors(summary: Mapping[str, Any]) -> str:
     """What the errors behind ± are mostly caused by."""
-    if summary.get("estimated_force_error_N") is None:
+    turned = is_turned(summary)
+    if summary.get("estimated_torque_error_Nmm" if turned else "estimated_force_error_N") is None:
         return "error not estimated"
-    return f"largest part of the errors ±: {largest_errors(summary.get('estimated_errors'))}"
+    return f"largest part of the errors ±: {largest_errors(summary.get('estimated_errors'), turned)}"
 
 
 def _after(summary: Mapping[str, Any]) -> str:

@@ -56,6 +56,11 @@ def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
     return float(values[at]), float(setup.section_turns[is_middle(setup)][at])
 
 
+def shear_inside_median(setup: Setup, snapshot: Snapshot) -> float:
+    """The median of the same along the middle turns, MPa."""
+    return float(np.median(_shear_inside(setup, snapshot)))
+
+
 def to_the_end(setup: Setup, snapshot: Snapshot) -> float:
     """By how much `shear_inside` changes up to the end of the middle turns, MPa, on the straight line through the two
     last sections; 0 where a section before the last has the largest value."""

@@ -210,6 +210,7 @@ def build_setup(
         ends=case.ends,
         phases=tuple(phase.label for phase in case.loading),
         forces_given=forces_given(case),
+        torques_given=tuple(any(head.torque is not None for head in heads_of(one).values()) for one in case.loading),
         turns=wire.turns,
         wire_radius=wire.radius,
         rule=rod.rule,
@@ -224,7 +225,7 @@ def build_setup(
         coiling_diameter=coiling_diameter,
         force_line=build_force_line(case),
         bounds=case_limits(case, spring, elastic.shear_modulus),
-        wound_solid="initial_tension" in case.past,
+        initial_tension=getattr(case.spring, "initial_tension", None) or 0.0,
         strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
     )
 

@@ -38,7 +38,7 @@ from coilset.model.case import Case
 from coilset.model.case.case import SectionSpec
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.results.records.record import Errors, Result, RunErrors, Setup, Step, Working
-from coilset.model.results.records.releases import FREE, Release, is_turned, last_release
+from coilset.model.results.records.releases import FREE, Release, last_release, set_of, turned_radius
 from coilset.model.results.stresses import change_of_sign, shear_inside, to_the_end
 from coilset.model.run.followed_sections import FollowedSections
 from coilset.model.run.load_history import LoadHistory
@@ -59,8 +59,11 @@ STILL = 1e-9  # of the free length: a step of less travel is one of force or tim
 # springs with 8, 16 and 64 elements per turn the error at 16 was 0.00 to 0.7 of the difference of the forces, 0.01 to
 # 1.8 of that of the sets, 0.05 to 0.9 of that of the residual stresses.
 FORCE, SET, SHEAR = 0.75, 1.0, 1.0
-# That of the initial rate was 0.3 to 0.5 of the difference where ends are closed, 1.8 in a double cone, both with 16.
-RATE = 1.0
+# A mesh of FINER times the elements leaves half of an error of first order and a quarter of one of second order. In
+# twelve springs with ground ends the error at 16 elements per turn was 0.6 to 1.5 times the difference to it.
+FINER, RATE = 2.0, 2.0
+MANY = 10_000  # stations: no finer mesh
+BESIDE = 0.01  # of the travel of the first touch
 SECTION = 1.25  # of the difference to the finer rule, or to free warping, which have an error of their own
 # Of the difference to the higher polynomials: kinks converge slowly. In rectangles at D/d = 3.2 to 10, far beyond
 # yield, the error of the force with degree 8 was 2.1 to 3.4 of what degree 10 changes.
@@ -75,15 +78,13 @@ NOT_KNOWN = Errors(None, None, None)
 def estimated(analysis: LoadHistory) -> Result:
     """The result of a complete run with the errors of its numbers; collective.
 
-    Where the companion finds no equilibrium, only the error by the steps is known, and the log says so. Those of a
-    spring in torsion are not estimated.
+    Where the companion finds no equilibrium, only the error by the steps is known, and the log says so.
     """
     result, comm = analysis.result, analysis.comm
-    if is_turned(analysis.setup, result.steps):
-        return result
+    radius = turned_radius(analysis.setup, result.steps)
     try:
         companion = LoadHistory(coarse_case(analysis.case, result.steps), comm, False)
-        watch = _Watch(companion)
+        watch = _Watch(companion, radius)
         companion.run(watch)
         surfaces = watch.surface_errors()
         twins = working_states(companion, watch)
@@ -94,21 +95,51 @@ def estimated(analysis: LoadHistory) -> Result:
     judged = _judged(analysis, companion, watch, surfaces) if comm.rank == 0 else None
     steps, errors = comm.bcast(judged)
     working = result.working and twins and _working(result.working, twins, watch)
-    of_rate = RATE * abs(result.rate - companion.result.rate)
-    rate_error = of_rate if math.isfinite(of_rate) else None
+    rate_error = None if radius else _rate_error(analysis)
     return replace(result, steps=steps, errors=errors, working=working, rate_error=rate_error)
+
+
+def _rate_error(analysis: LoadHistory) -> float | None:
+    """Error of the initial rate by mesh and contact, N/mm, None where it is not known; collective.
+
+    Ends that are closed or ground first touch where the mesh lets them, and two coarse meshes may agree by chance: a
+    finer one shows the error. Of very many elements it would need too much memory.
+    """
+    if len(analysis.setup.turns) > MANY:
+        return None
+    try:
+        finer = LoadHistory(remeshed(analysis.case, FINER), analysis.comm, False)
+        finer.settle_coils()
+        by_mesh = RATE * abs(finer.initial_rate() - analysis.result.rate)
+    except CoilsetError as error:
+        log.info("initial rate: error not estimated, finer mesh: %s", error)
+        return None
+    control, continuation = finer.control, finer.continuation
+    travel = continuation.control.probe * finer.spring.free_length
+
+    def touched(travel: float) -> tuple[float, float]:
+        load = control.to_height(control.height - travel)
+        return continuation.probe(load, lambda: (control.trial_force, energy_of_contacts(finer)))[1]
+
+    (force, energy), (_, after) = (touched(part * travel) for part in (1.0, 1.0 + BESIDE))
+    return _known(by_mesh + _with_rigid_contacts((after - energy) / (BESIDE * travel), force) / travel)
+
+
+def remeshed(case: Case, factor: float) -> Case:
+    """A case with so many times the elements, at least the fewest that there may be."""
+    mesh = case.mesh
+    density = mesh.elements_per_turn
+    if isinstance(density, Table):
+        values = tuple(max(LEAST, factor * value) for value in density.values)
+        made: Any = density.model_copy(update={"values": values})
+    else:
+        made = max(float(LEAST), factor * density)
+    sagitta = None if mesh.sagitta is None else mesh.sagitta / factor**2
+    return case.model_copy(update={"mesh": mesh.model_copy(update={"elements_per_turn": made, "sagitta": sagitta})})
 
 
 def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
     """The case of the companion: half of the elements, the steps of the run, no estimates, a balance of its own."""
-    mesh = case.mesh
-    density = mesh.elements_per_turn
-    if isinstance(density, Table):
-        values = tuple(max(LEAST, 0.5 * value) for value in density.values)
-        coarse: Any = density.model_copy(update={"values": values})
-    else:
-        coarse = max(float(LEAST), 0.5 * density)
-    sagitta = None if mesh.sagitta is None else 4.0 * mesh.sagitta
     loading = []
     for number, phase in enumerate(case.loading):
         marks = [step.progress for step in steps if step.phase == number]
@@ -116,12 +147,11 @@ def coarse_case(case: Case, steps: Sequence[Step]) -> Case:
             raise CoilsetError(f"phase {number + 1} was given another target on its way, which is not repeated")
         loading.append(phase.model_copy(update={"steps": [*marks[:-1], 1.0] if marks else 1}))
     update = {
-        "mesh": mesh.model_copy(update={"elements_per_turn": coarse, "sagitta": sagitta}),
         "loading": loading,
         "solver": case.solver.model_copy(update={"tolerance": BALANCE}),
         "accuracy": "none",
     }
-    return case.model_copy(update=update)
+    return remeshed(case, 0.5).model_copy(update=update)
 
 
 @dataclass(frozen=True)
@@ -141,11 +171,26 @@ class _Seen:
     taken: float
 
 
-class _Watch:
-    """Follows the companion's sections and notes the energy of its contacts; collective."""
+def energy_of_contacts(history: LoadHistory) -> float:
+    """Energy of the contacts' bedding at the last evaluation, N mm; collective."""
+    layout, energy = history.system.layout, 0.0
+    assert isinstance(layout, LineLayout)
+    for part in history.system.last.contributions:
+        counted = part.bears & layout.begins_here(part.dofs)  # contacts that join two ranks' parts are on both
+        energy += 0.5 * float(part.pressure[counted] @ part.penetration[counted])
+    return sum_of_ranks(history.comm, energy)
 
-    def __init__(self, companion: LoadHistory) -> None:
-        self.companion, self.comm = companion, companion.comm
+
+class _Watch:
+    """Follows the companion's sections and notes the energy of its contacts; collective.
+
+    Args:
+        companion: that is followed.
+        radius: by which travel and force are measured, see Step.
+    """
+
+    def __init__(self, companion: LoadHistory, radius: float) -> None:
+        self.companion, self.comm, self.radius = companion, companion.comm, radius
         section, rule = companion.case.mesh.section, companion.rod.rule
         finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
         outline, case = outline_of(rule), companion.case
@@ -164,41 +209,36 @@ class _Watch:
             usual, shape = SectionSpec(kind="warping"), case.wire_shape
             finer = outline.rule(max(len(usual.build(shape=shape)), len(rule)))
             self.warping = follow(WARPING, "warping", finer, usual.polynomials(shape))
-        self.greatest, self.torque = 0.0, 0.0
+        self.coil, self.greatest = 0.5 * companion.setup.mean_diameter, 0.0
         self.seen, self.at = list[_Seen](), dict[int, int]()  # and which of them is that of a step, by its number
 
     def __call__(self, step: Step) -> None:
-        self.greatest, self.torque = max(self.greatest, abs(step.force_N)), max(self.torque, abs(step.torque_Nmm))
-        if not (self.seen and step.rests(self.seen[-1].step, self.greatest, self.torque)):
+        self.greatest = max(self.greatest, step.load(self.coil))
+        if not (self.seen and step.rests(self.seen[-1].step, self.greatest, self.coil)):
             self.seen.append(self._look_at(step))
         self.at[step.number] = len(self.seen) - 1
 
     def _look_at(self, step: Step) -> _Seen:
         """The companion after a step that loads or relaxes it; collective."""
-        travel = step.travel_mm - (self.seen[-1].step.travel_mm if self.seen else 0.0)
+        travel, force = step.measured(self.radius)
+        travel -= self.seen[-1].step.measured(self.radius)[0] if self.seen else 0.0
         still = abs(travel) < STILL * self.companion.spring.free_length
         section = self.finer.follow(travel, still)
         warping = self.warping.follow(travel, still) if self.warping else 0.0
         warping = self.left_out * (warping - section if self.warps else warping)
-        energy, force = self._energy(), abs(step.force_N)
-        loaded = force > FREE * self.greatest
-        contact = _with_rigid_contacts(self._slope(step, energy), force if loaded else math.inf)
-        return _Seen(step, section, warping, contact, 2.0 * energy / force if loaded else 0.0)
+        energy, loaded = self._energy(), abs(force) > FREE * self.greatest
+        contact = _with_rigid_contacts(self._slope(force, energy), abs(force) if loaded else math.inf)
+        return _Seen(step, section, warping, contact, 2.0 * energy / abs(force) if loaded else 0.0)
 
     def _energy(self) -> float:
         """Energy of the contacts' bedding at the last evaluation, N mm; collective."""
-        layout, energy = self.companion.system.layout, 0.0
-        assert isinstance(layout, LineLayout)
-        for part in self.companion.system.last.contributions:
-            counted = part.bears & layout.begins_here(part.dofs)  # contacts that join two ranks' parts are on both
-            energy += 0.5 * float(part.pressure[counted] @ part.penetration[counted])
-        return sum_of_ranks(self.comm, energy)
+        return energy_of_contacts(self.companion)
 
-    def _slope(self, step: Step, energy: float) -> float:
+    def _slope(self, force: float, energy: float) -> float:
         """Change of the energy over a travel that makes the force greater, N; not a number if none is found;
         collective."""
         control, continuation = self.companion.control, self.companion.continuation
-        further = math.copysign(FURTHER * control.free_length, step.force_N)
+        further = math.copysign(FURTHER * control.free_length, force)
         for travel in (further, -further):
             outcome, after = continuation.probe(control.to_travel(travel), self._energy)
             if outcome.converged:
@@ -223,21 +263,21 @@ def _judged(
     analysis: LoadHistory, companion: LoadHistory, watch: _Watch, surfaces: tuple[float, float]
 ) -> tuple[tuple[Step, ...], RunErrors]:
     """The steps with their total errors, and the errors of the run's numbers; on rank 0."""
-    setup, result, seen = analysis.setup, analysis.result, watch.seen
+    setup, result, seen, radius = analysis.setup, analysis.result, watch.seen, watch.radius
     at = {_place(step): watch.at[step.number] for step in companion.result.steps}
     steps, found = list[Step](), list[_StepErrors]()
-    greatest, torque = result.greatest_force, max((abs(step.torque_Nmm) for step in result.steps), default=0.0)
-    force = travel = 0.0
-    stiffness = result.rate
+    coil = 0.5 * setup.mean_diameter
+    greatest = max(step.load(coil) for step in result.steps)
+    before, stiffness = (0.0, 0.0), result.rate
     for step in result.steps:
-        way = step.travel_mm - travel
-        rests = bool(steps) and step.rests(steps[-1], greatest, torque)
-        if not rests and abs(way) > STILL * analysis.spring.free_length and step.force_N != force:
-            stiffness = abs((step.force_N - force) / way)
-        force, travel = step.force_N, step.travel_mm
-        found.append(found[-1] if rests else _step_errors(step, seen, at.get(_place(step)), stiffness))
+        now = step.measured(radius)
+        way, rise = now[0] - before[0], now[1] - before[1]
+        rests, before = bool(steps) and step.rests(steps[-1], greatest, coil), now
+        if not rests and rise and abs(way) > STILL * analysis.spring.free_length:
+            stiffness = abs(rise / way)
+        found.append(found[-1] if rests else _step_errors(step, watch, at.get(_place(step)), stiffness))
         steps.append(_with_errors(step, found[-1]))
-    top = max(range(len(steps)), key=lambda k: abs(steps[k].force_N))
+    top = steps.index(max(steps, key=lambda step: abs(step.measured(radius)[1])))
     forces, release = [_known(value) for value in found[top].forces], last_release(setup, result)
     sets: list[float | None] = [None] * 4
     shears: list[float | None] = [None] * 4
@@ -245,8 +285,10 @@ def _judged(
     theirs = last_release(companion.setup, companion.result)
     if release is not None and theirs is not None:
         number = result.steps.index(release.step)
-        sets = [SET * abs(theirs.set - release.set), *map(_known, found[number].heights[1:])]
-        sets[2] = _by_contact(seen, release)
+        by_mesh = abs(set_of(theirs, radius) - set_of(release, radius))
+        sets = [SET * by_mesh, *map(_known, found[number].heights[1:])]
+        sets[2] = _by_contact(seen, abs(set_of(release, radius)), radius)
+    if release is not None and theirs is not None and not radius:
         slope, other = _shear_slope(setup, result, release), shear_inside(companion.setup, theirs.snapshot)[0]
         shears = [None if one is None else slope * one for one in sets]
         by_mesh = SHEAR * abs(other - shear_inside(setup, release.snapshot)[0])
@@ -263,7 +305,7 @@ def _working(working: Working, twins: Working, watch: _Watch) -> Working:
     states = []
     for state, twin in zip(working.states, twins.states, strict=True):
         if state.step and twin.step:
-            errors = _step_errors(state.step, watch.seen, watch.at[twin.step.number], abs(state.rate))
+            errors = _step_errors(state.step, watch, watch.at[twin.step.number], abs(state.rate))
             state = replace(state, step=_with_errors(state.step, errors))
         states.append(state)
     return replace(working, states=tuple(states))
@@ -293,13 +335,14 @@ def _total(steps: float | None, others: Sequence[float]) -> float | None:
     return None if steps is None else _known(abs(steps) + sum(map(abs, others)))
 
 
-def _step_errors(step: Step, seen: Sequence[_Seen], number: int | None, stiffness: float) -> _StepErrors:
+def _step_errors(step: Step, watch: _Watch, number: int | None, stiffness: float) -> _StepErrors:
     """The errors of a step, which the companion has taken as its step `number`; not numbers where it has not."""
     if number is None:
         return _StepErrors((math.nan,) * 4, (math.nan,) * 4)
-    one = seen[number]
-    force = abs(one.step.force_N - step.force_N) + abs(one.step.seat_height_mm - step.seat_height_mm) * stiffness
-    forces = FORCE * force, SECTION * one.section, one.contact, one.warping
+    one = watch.seen[number]
+    (travel, force), (there, found) = (each.measured(watch.radius) for each in (step, one.step))
+    mesh = FORCE * (abs(found - force) + abs(there - travel) * stiffness)
+    forces = mesh, SECTION * one.section, one.contact, one.warping
     return _StepErrors(forces, tuple(value / stiffness if stiffness else math.nan for value in forces))
 
 
@@ -308,11 +351,11 @@ def _with_rigid_contacts(slope: float, force: float) -> float:
     return RIGID * abs(slope) / (1.0 - min(max(slope / force, 0.0), TAKEN))
 
 
-def _by_contact(seen: Sequence[_Seen], release: Release) -> float | None:
+def _by_contact(seen: Sequence[_Seen], most: float, radius: float) -> float | None:
     """Bound of the error of the set by what the bedding has taken at the maximum force, mm, and at most the set: where
     wire flows, all of it stays. None of a spring without a force."""
-    top = max(seen, key=lambda one: abs(one.step.force_N))
-    return min(top.taken, abs(release.set)) if top.step.force_N else None
+    top = max(seen, key=lambda one: abs(one.step.measured(radius)[1]))
+    return min(top.taken, most) if top.step.measured(radius)[1] else None
 
 
 def _shear_slope(setup: Setup, result: Result, release: Release) -> float:
@@ -326,9 +369,9 @@ def _shear_slope(setup: Setup, result: Result, release: Release) -> float:
 
 def _of_steps(setup: Setup, result: Result) -> Errors:
     """Errors by the length of the steps."""
-    release = last_release(setup, result)
-    force = result.top.steps_force_error_N if result.top else None
+    radius, release = turned_radius(setup, result.steps), last_release(setup, result)
+    force = max(result.steps, key=lambda step: abs(step.measured(radius)[1])).steps_force_error_N
     error = None if release is None else release.set_error
-    if release is None or error is None:
-        return Errors(None if force is None else abs(force), None, None)
-    return Errors(None if force is None else abs(force), abs(error), _shear_slope(setup, result, release) * abs(error))
+    known = release is not None and error is not None
+    shear = _shear_slope(setup, result, release) * abs(error) if release and error is not None and not radius else None
+    return Errors(None if force is None else abs(force), abs(error) if known and error is not None else None, shear)

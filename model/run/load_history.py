@@ -195,7 +195,7 @@ class LoadHistory:
         """
         try:
             if not self.result.snapshots:
-                self._settle_coils()
+                self.settle_coils()
                 self.recorder.begin(self.initial_rate())
             touched()
             for number in range(self.program.number, len(self.case.loading)):
@@ -228,7 +228,7 @@ class LoadHistory:
         self.recorder.add_warning(warning)
         self.recorder.add_snapshot(name)
 
-    def _settle_coils(self) -> None:
+    def settle_coils(self) -> None:
         """Let coils that are wound onto each other carry the tension of their wire, without a load on the spring.
 
         Raises:

@@ -209,9 +209,8 @@ class Recorder:
 
     def _as_wrong_as_before(self, step: Step) -> Step:
         """The step; one that changes nothing has the errors by the step size of the one before."""
-        steps = (*self.result.steps, step)
-        force, torque = (max(abs(getattr(one, name)) for one in steps) for name in ("force_N", "torque_Nmm"))
-        if len(steps) == 1 or not step.rests(steps[-2], force, torque):
+        steps, radius = (*self.result.steps, step), 0.5 * self.setup.mean_diameter
+        if len(steps) == 1 or not step.rests(steps[-2], max(one.load(radius) for one in steps), radius):
             return step
         names = "steps_force_error_N", "steps_height_error_mm"
         return replace(step, **{name: getattr(steps[-2], name) for name in names})

@@ -18,6 +18,7 @@ from coilset.model.base.errors import SolveError
 from coilset.model.case import Case
 from coilset.model.contact.build import bedding_of
 from coilset.model.results.records.record import RunErrors
+from coilset.model.results.records.releases import is_turned
 from coilset.model.results.records.warnings import allowed_errors
 from coilset.model.run.analysis import Analysis
 
@@ -80,8 +81,8 @@ def within_accuracy(first: Analysis, run: Callable[[Analysis, str], object]) -> 
 
 
 def finer_case(analysis: Analysis, left: set[str], most: float = MOST) -> Finer | None:
-    """The case with which the errors of a complete run would be within its accuracy; None if they are, or cannot be;
-    collective.
+    """The case with which the errors of a complete run would be within its accuracy; None if they are, or cannot be,
+    and of a torsion spring, whose runs take long; collective.
 
     Args:
         analysis: of the run.
@@ -89,7 +90,7 @@ def finer_case(analysis: Analysis, left: set[str], most: float = MOST) -> Finer 
         most: times the cost of the run that the finer one may have.
     """
     setup, result, comm = analysis.setup, analysis.result, analysis.comm
-    if result.errors is None:
+    if result.errors is None or is_turned(setup, result.steps):
         return None
     allowed = comm.bcast(allowed_errors(setup, result) if comm.rank == 0 else None)
     factors = needed(result.errors, allowed, left, most)

@@ -309,7 +309,8 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if summary["initial_tension_N"] is not None:
         for when, name in (("before", ""), ("after", "_after")):
             error = summary[f"estimated_initial_tension{name}_error_N"]
-            yield f"initial tension {when}", within(summary[f"initial_tension{name}_N"], error, "N", 2)
+            given = "" if name else f", wound with {summary['initial_tension_given_N']:.5g} N"
+            yield f"initial tension {when}", within(summary[f"initial_tension{name}_N"], error, "N", 2) + given
         yield "rate, coils open", quantity(summary["open_rate_N_per_mm"], "N/mm")
     yield from _beyond_coil(summary, "hooks")
     yield "free length before", quantity(summary["free_length_before_mm"], "mm")
@@ -344,18 +345,25 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     inside = within(summary["residual_shear_inside_MPa"], error, "MPa", 2)
     at = "" if turn is None else f" at turn {turn:.2f}"
     yield "residual shear stress, inside of coil", inside + at
+    yield "  median of the middle turns", quantity(summary["residual_shear_inside_median_MPa"], "MPa", 2)
     if largest := largest_errors(summary["estimated_errors"]):
         yield "largest part of the errors ±", largest
 
 
 def _turned(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Rows of a torsion spring."""
-    yield "[bold]set[/]", f"[bold]{quantity(summary['turn_set_deg'], '°', 2)}[/]"
-    yield "largest rotation", quantity(summary["turn_max_deg"], "°", 2)
-    yield "maximum torque", quantity(summary["torque_max_Nmm"], "N mm", 1)
+    of_set = summary["estimated_turn_set_error_deg"]
+    yield "[bold]set[/]", f"[bold]{within(summary['turn_set_deg'], of_set, '°', 3)}[/]"
+    given = summary["torque_max_is_given"]
+    error = summary["estimated_turn_error_deg"] if given else None
+    yield "largest rotation", within(summary["turn_max_deg"], error, "°", 3)
+    error = None if given else summary["estimated_torque_error_Nmm"]
+    yield f"maximum torque{', given' if given else ''}", within(summary["torque_max_Nmm"], error, "N mm", 1)
     yield "rate", quantity(summary["turn_rate_Nmm_per_deg"], "N mm/°")
     for side in ("inside", "outside"):
         stress = quantity(summary[f"residual_bending_{side}_MPa"], "MPa", 2)
         yield f"residual bending stress, {side} of coil", stress
     yield from _beyond_coil(summary, "arms")
     yield "smallest inner diameter", quantity(summary["inner_diameter_min_mm"], "mm", 2)
+    if largest := largest_errors(summary["estimated_errors"], turned=True):
+        yield "largest part of the errors ±", largest

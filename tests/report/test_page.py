@@ -250,7 +250,7 @@ def test_a_run_that_ends_before_its_first_step_has_no_pictures_and_no_page(folde
         def draw(self, _):
             raise AssertionError
 
-    monkeypatch.setattr(LoadHistory, "_settle_coils", fail)
+    monkeypatch.setattr(LoadHistory, "settle_coils", fail)
     with pytest.raises(SolveError, match=r"^the wound coils find no equilibrium$"):
         solve(folder.parent / "spring.yaml", tmp_path, False, [], drawings=Never(), comm=MPI.COMM_SELF)
     for command in (report, lambda where: animate(open_run(where)), lambda where: write_series(open_run(where))):

@@ -36,7 +36,7 @@ def test_the_rate_is_that_of_open_coils_where_a_step_closes_them():
     assert [curve.at(travel)[0] for travel in (1.0, 8.5, 9.5)] == pytest.approx([3.0, 49.0, 99.0])
 
 
-WOUND = SimpleNamespace(wound_solid=True)
+WOUND = SimpleNamespace(initial_tension=25.2)
 
 
 def pulled(number, travel, phase=0, held=25.0, free=0.0):
@@ -55,6 +55,7 @@ def test_the_initial_tension_needs_no_step_in_which_coils_touch(first):
     steps = [pulled(number, travel, 0) for number, travel in enumerate((*first, 10.0, 20.0), 1)]
     found = tension(WOUND, SimpleNamespace(steps=steps, rate=27.0), None)
     assert found["initial_tension_N"] == pytest.approx(25.0, abs=0.05)
+    assert found["initial_tension_given_N"] == 25.2
     assert found["open_rate_N_per_mm"] == pytest.approx(3.0, rel=0.01)
     assert found["estimated_initial_tension_error_N"] is None
 
@@ -81,6 +82,7 @@ def test_an_initial_tension_that_steps_do_not_show_is_none():
     for travels in ((100.0,), (0.2, 0.4)):
         steps = [pulled(k, travel) for k, travel in enumerate(travels, 1)]
         found = tension(WOUND, SimpleNamespace(steps=steps, rate=27.0), None)
+        assert found.pop("initial_tension_given_N") == 25.2
         assert set(found.values()) == {None}
 
 

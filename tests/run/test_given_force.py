@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from coilset.model.case import check
-from coilset.model.results.records.record import Setup
+from coilset.model.results.records.record import Result, Setup, Step
 from coilset.model.results.records.warnings import allowed_force
 from coilset.model.run.build import forces_given
 
@@ -22,9 +22,8 @@ def test_forces_of_the_load_program() -> None:
 @pytest.mark.parametrize(("given", "allowed"), [(False, 2.0), (True, 8.0)])
 def test_accuracy_of_a_given_force(given: bool, allowed: float) -> None:
     """On a wall of 200 N/mm, 0.2 % of a travel of 20 mm are 8 N, those of a force of 1,000 N are 2 N."""
-    step = SimpleNamespace(
-        force_N=1000.0, travel_mm=20.0, steps_force_error_N=0.2, steps_height_error_mm=-1e-3, phase=0, progress=1.0
-    )
-    setup = SimpleNamespace(forces_given=(given,), limits=SimpleNamespace(accuracy=2e-3))
+    errors = {"steps_force_error_N": 0.2, "steps_height_error_mm": -1e-3}
+    step = Step(1, 0, 1.0, 80.0, 20.0, 1000.0, 1, 1, 0, 0, 0, 0.0, **errors)
+    setup = SimpleNamespace(forces_given=(given,), limits=SimpleNamespace(accuracy=2e-3), mean_diameter=40.0)
     setup.is_force_given = lambda step: Setup.is_force_given(setup, step)
-    assert allowed_force(setup, SimpleNamespace(top=step)) == pytest.approx(allowed)
+    assert allowed_force(setup, Result(steps=(step,))) == pytest.approx(allowed)

@@ -104,6 +104,23 @@ def test_a_spring_that_is_turned_in_vain_has_reached_a_torque(monkeypatch, capsy
     assert any(f"{last.turn_deg:.2f}" in line and f"{last.torque_Nmm:.1f}" in line for line in printed)
 
 
+@pytest.mark.parametrize("to", [{"turn": 60.0}, {"torque": 950.0}])
+def test_torque_rotation_and_set_have_the_meshs_error(to):
+    """Against four times the elements; the error falls with the second power of their length, a third is stated."""
+    mesh = {"section": {"radial": 4, "angular": 12}}
+    spring = {"wire_diameter": WIRE, "mean_diameter": 30.0, "turns": 2.5, "pitch": PITCH}
+    entries = {"spring": spring, "material": "ck15", "accuracy": "50 %", "heads": {"top": {"sideways": "free"}}}
+    _, coarse = solved(to, **entries, mesh=mesh | {"elements_per_turn": 8})
+    _, fine = solved(to, **entries | {"accuracy": "none"}, mesh=mesh | {"elements_per_turn": 32})
+    given = "torque" in to
+    assert coarse["torque_max_is_given"] == given
+    size, error = ("turn_max_deg", "turn_error_deg") if given else ("torque_max_Nmm", "torque_error_Nmm")
+    for name, stated in ((size, error), ("turn_set_deg", "turn_set_error_deg")):
+        true = abs(coarse[name] - fine[name])
+        assert 1e-4 * abs(fine[name]) < true < coarse[f"estimated_{stated}"] < 12.0 * true
+        assert fine[f"estimated_{stated}"] is None
+
+
 @pytest.mark.parametrize("mean", [12.0, 30.0])
 def test_the_stress_at_the_inside_is_that_of_a_curved_beam(mean):
     """Winkler's factor for a circular section, (4w² − w − 1)/(4w(w − 1)): 1.198 and 1.081, within 1 %; a straight

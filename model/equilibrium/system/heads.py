@@ -134,10 +134,12 @@ class Heads:
         return self.load({}, {AXIAL: -force})
 
     def to_travel(self, travel: float) -> Load:
-        """The load that compresses the spring by a further travel, mm, all else held or under the force it has now."""
+        """The load that drives the measured freedom by a further travel, mm; others are held, or keep their forces."""
+        size = self.radius if self.measure % SEAT_DOFS >= 3 else 1.0
+        value = float(self.freedoms("equilibrium")[self.measure]) - travel / size
         forces = enumerate(self.reactions("equilibrium").tolist())
-        kept = {one: force for one, force in forces if one != AXIAL and int(self.dofs[one]) not in self.held}
-        return self.load({AXIAL: self.freedom_at(self.height - travel)}, kept)
+        kept = {one: force for one, force in forces if one != self.measure and int(self.dofs[one]) not in self.held}
+        return self.load({self.measure: value}, kept)
 
     # ---- the spring that nothing holds: its bottom tip stays, which then carries no force -------------------------
 

@@ -50,6 +50,8 @@ def within(value: float | None, error: float | None, unit: str, digits: int) -> 
 
 NUMBERS = {"force_N": "force", "set_mm": "set", "residual_shear_inside_MPa": "residual stress"}
 """Numbers whose errors are estimated, in words."""
+TURNED = {"force_N": "torque"}
+"""What these are in torsion."""
 CAUSES = {
     "steps": "steps",
     "mesh": "mesh",
@@ -89,14 +91,16 @@ def lost(stay: Mapping[str, Any]) -> str:
     return f"{stay['loss_percent']:z.2f} % of {stay['force_before_N']:.5g} N in {stay['hours']:.4g} h{heat}"
 
 
-def largest_errors(errors: Mapping[str, Mapping[str, float | None]] | None) -> str:
+def largest_errors(errors: Mapping[str, Mapping[str, float | None]] | None, turned: bool = False) -> str:
     """Which cause has the largest part in which number, `mesh (force, set), steps (residual stress)`.
 
     Args:
         errors: `estimated_errors` of a summary; None: empty.
+        turned: whether they are those of a torsion spring.
     """
+    words = NUMBERS | TURNED if turned else NUMBERS
     found: dict[str, list[str]] = {}
-    for number, word in NUMBERS.items() if errors else ():
+    for number, word in words.items() if errors else ():
         parts = {cause: (errors or {}).get(cause, {}).get(number) or 0.0 for cause in CAUSES}
         largest = max(parts, key=lambda cause: parts[cause])
         if parts[largest]:

@@ -197,8 +197,9 @@ def _held(opened: Sequence[Step], free: float, closed: float, stiffest: float) -
 
 def tension(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
     """Entries of the summary of a spring whose coils are wound onto each other; None of any other."""
-    first, after = tensions(result, release) if setup.wound_solid else (Held(), None)
+    first, after = tensions(result, release) if setup.initial_tension else (Held(), None)
     return {
+        "initial_tension_given_N": setup.initial_tension or None,
         "initial_tension_N": first.force,
         "estimated_initial_tension_error_N": first.error,
         "initial_tension_after_N": after and after.force,

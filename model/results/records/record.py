@@ -19,7 +19,7 @@ from coilset.model.rod.elements import Element
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
 
-AT_REST = 1e-6  # of the greatest force and torque so far, and of the height: what changes by less stays as it is
+AT_REST = 1e-6  # of the greatest load so far, and of the height: what changes by less stays as it is
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,7 @@ class Step:
             each other by their shape, or there is only one.
         steps_force_error_N: what the length of the steps up to here has left wrong in the force, true value minus
             result, and steps_height_error_mm in the height at which this force would be; None where it is not known.
+            Of a spring that its heads turn these are errors of torque and rotation, at the mean radius of its coil.
         estimated_force_error_N, estimated_height_error_mm: sizes of both errors by all causes, see RunErrors; None
             where one is not known, and until the run is complete.
         hours: since the start, of a material that creeps.
@@ -86,22 +87,35 @@ class Step:
     turn_deg: float = 0.0
     torque_Nmm: float = 0.0
 
-    def rests(self, before: "Step", force: float, torque: float) -> bool:
+    def measured(self, radius: float = 0.0) -> tuple[float, float]:
+        """Travel, mm, and force, N; of a spring whose heads turn it about its axis those at a `radius`, mm, not 0."""
+        return (
+            (radius * math.radians(self.turn_deg), self.torque_Nmm / radius)
+            if radius
+            else (self.travel_mm, self.force_N)
+        )
+
+    def load(self, radius: float) -> float:
+        """The greater of the axial force and that of the torque at a radius, mm; N."""
+        return max(abs(self.force_N), abs(self.torque_Nmm) / radius)
+
+    def rests(self, before: "Step", load: float, radius: float) -> bool:
         """Whether it neither loads nor relaxes the spring, so that what was wrong before it is as wrong after it.
 
         A spring free of load may move between its seats, where weak springs hold its tips.
 
         Args:
             before: the step before it.
-            force, torque: largest magnitudes so far, N and N mm.
+            load: the greatest so far, N; radius: of the coil, mm.
         """
-        turned = abs(self.torque_Nmm - before.torque_Nmm) > AT_REST * torque
+        least = AT_REST * load
+        turned = abs(self.torque_Nmm - before.torque_Nmm) > least * radius
         if self.hours != before.hours or (turned and not (self.lift_off_mm or before.lift_off_mm)):
             return False
-        if max(abs(self.force_N), abs(before.force_N)) <= AT_REST * force:
+        if max(abs(self.force_N), abs(before.force_N)) <= least:
             return True
         height = abs(self.seat_height_mm - before.seat_height_mm)
-        return abs(self.force_N - before.force_N) <= AT_REST * force and height <= AT_REST * self.seat_height_mm
+        return abs(self.force_N - before.force_N) <= least and height <= AT_REST * self.seat_height_mm
 
 
 @dataclass(frozen=True)
@@ -332,7 +346,7 @@ class Setup:
         material: name of the law.
         ends: `seats` or `clamped`.
         phases: labels of the load program.
-        forces_given: of each phase, whether it ends at a given axial force.
+        forces_given, torques_given: of each phase, whether it ends at a given axial force, or at a torque of a head.
         turns: of the stations, shape (n + 1,).
         wire_radius: of the elements, shape (n,), mm.
         rule: DiskRule.
@@ -346,7 +360,7 @@ class Setup:
         warnings: Warnings about the case, before it ran.
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
         force_line: ForceLine, or None.
-        wound_solid: whether coils press on each other before any load.
+        initial_tension: with which coils are wound onto each other, N; 0: they are not.
         strength: Strength of the wire in fatigue, or None.
         bounds: Limits of results.
     """
@@ -356,6 +370,7 @@ class Setup:
     ends: str
     phases: tuple[str, ...]
     forces_given: tuple[bool, ...]
+    torques_given: tuple[bool, ...]
     turns: np.ndarray
     wire_radius: np.ndarray
     rule: DiskRule
@@ -369,7 +384,7 @@ class Setup:
     warnings: tuple[Warning, ...] = ()
     coiling_diameter: float | None = None
     force_line: ForceLine | None = None
-    wound_solid: bool = False
+    initial_tension: float = 0.0
     strength: Strength | None = None
     bounds: tuple[Limit, ...] = ()
 
@@ -381,6 +396,10 @@ class Setup:
     def is_force_given(self, step: Step) -> bool:
         """Whether the force at the end of a step is a target of the load program, so that its height is the result."""
         return self.forces_given[step.phase] and step.progress >= 1.0
+
+    def is_torque_given(self, step: Step) -> bool:
+        """Whether the torque at the end of a step is a target, so that its rotation is the result."""
+        return self.torques_given[step.phase] and step.progress >= 1.0
 
     @property
     def section_turns(self) -> np.ndarray:
@@ -427,7 +446,8 @@ class Errors:
     """Sizes of the errors by one cause; None where they are not known or there is no such number.
 
     Attributes:
-        force_N: of the maximum force; set_mm: of the set; residual_shear_inside_MPa: of the residual shear stress.
+        force_N: of the maximum force; set_mm: of the set; residual_shear_inside_MPa: of the residual shear stress. Of a
+            spring that its heads turn the first two are those of torque and rotation, at the mean radius of its coil.
     """
 
     force_N: float | None

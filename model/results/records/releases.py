@@ -1,5 +1,6 @@
 """The releases of a run: the moments at which a loaded spring is free of load again."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
@@ -51,6 +52,16 @@ def is_turned(setup: Setup, steps: Sequence[Step]) -> bool:
         max((abs(getattr(one, name)) for one in steps), default=0.0) for name in ("turn_deg", "torque_Nmm", "force_N")
     )
     return turn > LEAST_TURN and torque > TURNED * 0.5 * setup.mean_diameter * force
+
+
+def turned_radius(setup: Setup, steps: Sequence[Step]) -> float:
+    """The coil's mean radius, mm, at which travel and force of a run that turns its spring are measured; else 0."""
+    return 0.5 * setup.mean_diameter if is_turned(setup, steps) else 0.0
+
+
+def set_of(release: Release, radius: float) -> float:
+    """Loss of free length, mm, or of a spring that was turned the rotation that stays, mm at the radius, if not 0."""
+    return radius * math.radians(release.snapshot.turn) if radius else release.set
 
 
 def load_of(setup: Setup, steps: Sequence[Step]) -> Callable[[Step], float]:

@@ -2,7 +2,7 @@
 
 from dataclasses import asdict
 from itertools import pairwise
-from math import hypot, isfinite
+from math import degrees, hypot, isfinite
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from coilset.model.results.limits import judged, limit_warnings
 from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates, tension, turning
 from coilset.model.results.records.record import Errors, Result, Setup, Snapshot, Step, WorkingState
-from coilset.model.results.records.releases import Release, is_turned, releases
+from coilset.model.results.records.releases import Release, releases, turned_radius
 from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.results.records.working import LINE, plastic_rise, working_numbers
@@ -25,6 +25,7 @@ from coilset.model.results.stresses import (
     peaks,
     plastic_work,
     shear_inside,
+    shear_inside_median,
     shear_peak,
 )
 from coilset.model.standards import en13906
@@ -71,6 +72,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         **peak_entries("residual_shear_ends_max", ends_peak(setup, shot)),
         residual_shear_inside_MPa=inside,
         residual_shear_inside_turn=inside_turn,
+        residual_shear_inside_median_MPa=shear_inside_median(setup, shot) if shot else None,
         shear_inside_max_MPa=max((shear_inside(setup, one)[0] for one in result.snapshots), key=abs),
         **peaks(setup, "residual_", [shot] if shot else []),
         **peaks(setup, "", result.snapshots),
@@ -158,15 +160,22 @@ def _release(release: Release) -> dict[str, Any]:
 def estimated_errors(setup: Setup, result: Result) -> dict[str, Any]:
     """Errors of maximum force, set and residual shear: in total, and by their causes; None where not estimated.
 
-    Nor are they in torsion, where axial force and loss of length are close to zero.
+    In torsion those of maximum torque, of the rotation under it, and of the set.
     """
-    errors = None if is_turned(setup, result.steps) else result.errors
-    total = Errors(None, None, None) if errors is None else errors.total
+    radius, errors, none = turned_radius(setup, result.steps), result.errors, Errors(None, None, None)
+    total = none if errors is None else errors.total
+    pressed, turned = (none, total) if radius else (total, none)
+    top = max(result.steps, key=lambda step: abs(step.torque_Nmm)) if radius else None
+    angle = None if top is None else top.estimated_height_error_mm
     return {
-        "estimated_rate_error_N_per_mm": None if errors is None else result.rate_error,
-        "estimated_force_error_N": total.force_N,
-        "estimated_set_error_mm": total.set_mm,
-        "estimated_residual_shear_inside_error_MPa": total.residual_shear_inside_MPa,
+        "estimated_rate_error_N_per_mm": None if errors is None or radius else result.rate_error,
+        "estimated_force_error_N": pressed.force_N,
+        "estimated_set_error_mm": pressed.set_mm,
+        "estimated_residual_shear_inside_error_MPa": pressed.residual_shear_inside_MPa,
+        "torque_max_is_given": top is not None and setup.is_torque_given(top),
+        "estimated_torque_error_Nmm": None if turned.force_N is None else radius * turned.force_N,
+        "estimated_turn_error_deg": None if angle is None else degrees(angle / radius),
+        "estimated_turn_set_error_deg": None if turned.set_mm is None else degrees(turned.set_mm / radius),
         "estimated_errors": errors,
     }
 

@@ -84,6 +84,10 @@ class Summary:
         in_slice=True,
     )
     residual_shear_inside_turn: float | None = entry("turns", "at which turn from the bottom tip")
+    residual_shear_inside_median_MPa: float | None = entry(
+        "MPa",
+        "its median along the middle turns: that of the coil, where ends that are held or closed raise the largest",
+    )
     shear_inside_max_MPa: float = entry(
         "MPa", "shear stress of largest magnitude at the inside over the snapshots", in_slice=True
     )
@@ -134,11 +138,14 @@ class Summary:
         "N mm/°", "torque over the rotation that the last release gives back"
     )
     turn_set_deg: float | None = entry("degrees", "rotation that remains after the last release")
+    initial_tension_given_N: float | None = entry(
+        "N", "`spring.initial_tension`, with which the wire is wound; `null`, as the next five, without it"
+    )
     initial_tension_N: float | None = entry(
         "N",
-        "F0 of coils that are wound onto each other: the line of the open spring in the first pull, back to "
-        "where it meets the line of the closed one, which has the initial rate; `null`, as the next four, without "
-        "`spring.initial_tension`, and where no two steps show the line",
+        "F0 at which coils open that are wound onto each other: the line of the open spring in the first pull, back to "
+        "where it meets the line of the closed one, which has the initial rate; `null` where no two steps show the "
+        "line",
     )
     estimated_initial_tension_error_N: float | None = entry(
         "N",
@@ -156,7 +163,7 @@ class Summary:
         "N/mm²", "limit up to which the constants of the material are valid", in_slice=True
     )
     estimated_rate_error_N_per_mm: float | None = entry(
-        "N/mm", "estimated size of the error of the initial rate, by the mesh; `null` where it is not known"
+        "N/mm", "estimated size of the error of the initial rate, by mesh and contact; `null` where it is not known"
     )
     estimated_force_error_N: float | None = entry(
         "N",
@@ -167,10 +174,17 @@ class Summary:
     estimated_residual_shear_inside_error_MPa: float | None = entry(
         "MPa", "the same of the residual shear stress at the inside of the coil"
     )
+    torque_max_is_given: bool = entry(
+        "", "whether the load program gives the maximum torque; its rotation was computed"
+    )
+    estimated_torque_error_Nmm: float | None = entry("N mm", "the same of the maximum torque of a torsion spring")
+    estimated_turn_error_deg: float | None = entry("degrees", "the same of the rotation under it")
+    estimated_turn_set_error_deg: float | None = entry("degrees", "the same of its set")
     estimated_errors: RunErrors | None = entry(  # noqa: RUF009 - it is frozen
         "",
         "the parts of these by their causes `steps`, `mesh`, `section`, `contact` and `warping`: each has `force_N`, "
-        "`set_mm` and `residual_shear_inside_MPa`; `null` where not estimated",
+        "`set_mm` and `residual_shear_inside_MPa`; of a torsion spring the first two are torque over, and rotation "
+        "times, the mean radius of its coil; `null` where not estimated",
     )
     working: tuple[dict[str, Any], ...] = entry(
         "",

@@ -7,10 +7,10 @@ from math import isfinite
 from coilset.model.base.warning import Warning
 from coilset.model.results.fatigue import fatigue_warnings
 from coilset.model.results.records.buckling import SIDEWAYS, buckling, leaning, snapped
-from coilset.model.results.records.labels import CAUSES, NUMBERS
+from coilset.model.results.records.labels import CAUSES, NUMBERS, TURNED
 from coilset.model.results.records.rates import FEW, tensions
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
-from coilset.model.results.records.releases import FREE, is_turned, last_release
+from coilset.model.results.records.releases import FREE, is_turned, last_release, set_of, turned_radius
 from coilset.model.results.records.units import unit_of
 from coilset.model.results.records.working import working_warnings
 from coilset.model.results.stresses import shear_inside
@@ -291,32 +291,36 @@ def allowed_force(setup: Setup, result: Result) -> float:
     Where the load program gives that force, the height under it is what was computed: it may be wrong by the accuracy
     of its travel, and the force at one height by as much as that changes it, which near block is more.
     """
-    required, top = setup.limits.accuracy or 0.0, result.top
+    required, radius = setup.limits.accuracy or 0.0, turned_radius(setup, result.steps)
+    top = max(result.steps, key=lambda step: abs(step.measured(radius)[1]), default=None)
     if top is None:
         return 0.0
-    allowed = abs(top.force_N)
+    travel, allowed = map(abs, top.measured(radius))
     force, height = top.steps_force_error_N, top.steps_height_error_mm
-    if setup.is_force_given(top) and force and height:
-        allowed = max(allowed, abs(top.travel_mm * force / height))
+    given = setup.is_torque_given(top) if radius else setup.is_force_given(top)
+    if given and force and height:
+        allowed = max(allowed, abs(travel * force / height))
     return required * allowed
 
 
 def force_in_words(setup: Setup, result: Result) -> str:
     """What the error of the maximum force is one of."""
+    if is_turned(setup, result.steps):
+        return TURNED["force_N"]
     return "travel at the maximum force" if result.top and setup.is_force_given(result.top) else NUMBERS["force_N"]
 
 
 def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     """Errors by the requested accuracy of the numbers that it governs, by their names in Errors: of a set, at least
-    one that is noticed; of the residual stress inside, STRESS times the accuracy of the largest stress there. None in
-    torsion, whose errors of torque and rotation are not estimated.
+    one that is noticed; of the residual stress inside, STRESS times the accuracy of the largest stress there, and none
+    in torsion.
     """
-    if is_turned(setup, result.steps):
-        return {}
     required, release = setup.limits.accuracy or 0.0, last_release(setup, result)
-    found = {"force_N": allowed_force(setup, result)}
-    if release is not None and release.set > 0.0:
-        found["set_mm"] = max(required * release.set, NOTICED * setup.spring.free_length)
+    radius, found = turned_radius(setup, result.steps), {"force_N": allowed_force(setup, result)}
+    left = 0.0 if release is None else set_of(release, radius)
+    if left > 0.0 or (left and radius):
+        found["set_mm"] = max(required * abs(left), NOTICED * setup.spring.free_length)
+    if left > 0.0 and not radius:
         largest = max(abs(shear_inside(setup, one)[0]) for one in result.snapshots)
         found["residual_shear_inside_MPa"] = STRESS * required * largest
     return {name: error for name, error in found.items() if error > 0.0}
@@ -339,8 +343,8 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
             return
         if error > allowed:
             worst[name] = required * error / allowed
-            is_force = name == "force_N"
-            size = f"{100 * worst[name]:.2g} %" if is_force else f"{error:.2g} {unit_of(name)}"
+            is_force, turned = name == "force_N", is_turned(setup, result.steps)
+            size = f"{100 * worst[name]:.2g} %" if is_force or turned else f"{error:.2g} {unit_of(name)}"
             words.append(f"{size} of the {force_in_words(setup, result) if is_force else NUMBERS[name]}")
     if worst:
         largest = max(worst, key=lambda name: worst[name])
@@ -379,7 +383,7 @@ def _longer(setup: Setup, result: Result) -> Iterator[Warning]:
 
 def _tension(setup: Setup, result: Result) -> Iterator[Warning]:
     """Of wound coils whose opening too few steps show."""
-    if not (setup.wound_solid and result.complete and any(step.force_N < 0.0 for step in result.steps)):
+    if not (setup.initial_tension and result.complete and any(step.force_N < 0.0 for step in result.steps)):
         return
     first, after = tensions(result, last_release(setup, result))
     for held, when in ((first, "first pull"), (after, "last release")):
