@@ -7,7 +7,6 @@ would not equal an uninterrupted one.
 
 import contextlib
 import fcntl
-import hashlib
 import logging
 import os
 import subprocess
@@ -16,7 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from coilset.model.runtime.caches import folder, load_without_compiler, version
+from coilset.model.runtime.caches import folder, load_without_compiler, toolchain, version
 from coilset.model.runtime.processes import end_with_parent, first_rank
 
 STAGES = ("rod", "creep", "uniform", "point")  # see precompile.py; the first run of a spring needs only the first
@@ -119,9 +118,8 @@ def _missing(stages: Sequence[str]) -> list[str]:
 
 
 def compiled(stage: str) -> Path:
-    """The file that marks a stage as compiled for this version and Python; see coilset.model.runtime.caches."""
-    kind = hashlib.sha256(repr((version(), sys.version, sys.prefix)).encode())
-    return folder() / f"compiled-{kind.hexdigest()[:16]}-{stage}"
+    """The file that marks a stage as compiled for this version and environment; see coilset.model.runtime.caches."""
+    return folder() / f"compiled-{version()}-{toolchain()}-{stage}"
 
 
 def announce_compiling(say: Callable[[str], None] = _to_stderr, notice: str = NOTICE_OF_PART) -> Announcement:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from coilset.model.base.errors import InputError
 from coilset.model.runtime.apart import OURS, SAFE_PATH
-from coilset.model.runtime.processes import number_of_ranks, usable_cores
+from coilset.model.runtime.processes import number_of_ranks, stay_on_this_machine, usable_cores
 from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, STAGES, announce_compiling, compile_first
 from coilset.scripts.startup import announce_begin, load_for_solve, typer
@@ -79,6 +79,8 @@ def options(
         check(ranks, name)
         if ranks > 1 and not {"-h", "--help"} & set(command):
             raise SystemExit(launch(ranks, command))  # the ranks have reported why
+    if name != "python":  # whose program may start MPI on other machines
+        stay_on_this_machine()
 
 
 @app.command()
@@ -326,7 +328,7 @@ def sweep(
     ),
     budget: str = typer.Option(None, metavar="H:MM:SS", help="start no case once all have taken this time together"),
     engine: Engine = typer.Option(None, help="where cases run [default: processes, under mpirun its ranks]"),
-    scheduler: str = typer.Option(None, metavar="ADDRESS", help="of a running Dask cluster, such as tcp://host:8786"),
+    scheduler: str = typer.Option(None, metavar="ADDRESS", help="of a running Dask cluster, such as tls://host:8786"),
     jobs: int = typer.Option(None, min=1, help="processes on this machine [default: one per core]"),
     ranks_per_case: int = typer.Option(1, min=1, help="under mpirun: number of ranks that share a case"),
     pictures: bool = FIGURES,

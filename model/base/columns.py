@@ -7,7 +7,7 @@ may have a decimal comma.
 import csv
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +16,7 @@ import numpy as np
 from coilset.model.base.entry import shortened
 from coilset.model.base.errors import InputError
 
+FORMULA = re.compile(r"\s*[=+\-@].")
 DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+([eE][-+]?\d+)?\s*")
 
 
@@ -62,6 +63,15 @@ def number(text: str | None) -> float:
         return float(text.replace(",", ".") if DECIMAL_COMMA.fullmatch(text) else text)
     except ValueError:
         return math.nan
+
+
+def as_text(cells: Iterable[object]) -> list[object]:
+    """Cells of a row to write; a word that a spreadsheet would take for a formula, as `=1+2`, gets an apostrophe."""
+    return [f"'{cell}" if isinstance(cell, str) and _is_formula(cell) else cell for cell in cells]
+
+
+def _is_formula(text: str) -> bool:
+    return FORMULA.match(text) is not None and not math.isfinite(number(text))
 
 
 def read_rows(path: str | Path) -> list[tuple[int, list[str]]]:

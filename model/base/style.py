@@ -6,6 +6,8 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import MaxNLocator
 
 FILE = Path(__file__).parent / "coilset.mplstyle"
@@ -24,6 +26,16 @@ def round_end(greatest: float, ends: Sequence[float] = ROUND) -> float:
         return 1.0
     power = 10.0 ** math.floor(math.log10(greatest))
     return next((end * power for end in ends if end * power >= greatest * (1.0 - 1e-9)), 10.0 * power)
+
+
+def as_written(figure: Figure) -> None:
+    """Texts of a figure, which may have names of the user's, are no formulas: a `$` in them is a letter.
+
+    Those of matplotlib's own, as powers of ten along an axis, stay formulas.
+    """
+    for text in figure.findobj(Text):
+        if "$" in text.get_text() and not text.get_text().startswith("$\\mathdefault"):
+            text.set_parse_math(False)
 
 
 def levels(low: float, high: float) -> np.ndarray:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Outline
 
-from coilset.model.base.style import DIVERGING, STYLE
+from coilset.model.base.style import DIVERGING, STYLE, as_written
 from coilset.model.figures.panels.panel import COLOURS, Panel, Trace
 from coilset.model.results.files.png_file import write
 
@@ -34,6 +34,7 @@ def save(figure: Figure, path: str | Path) -> None:
     The same picture as by `savefig`, which finds the layout, draws to be sure of it, and draws once more.
     """
     with mpl.rc_context(STYLE):
+        as_written(figure)
         figure.dpi = STYLE["savefig.dpi"]
         canvas = FigureCanvasAgg(figure)
         canvas.draw()

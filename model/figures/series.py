@@ -9,7 +9,7 @@ import numpy as np
 
 from coilset.model.figures.vtkhdf import write_vtkhdf
 from coilset.model.figures.wire_surface import frames, section_points, tubes
-from coilset.model.results.files.folder import make, whole
+from coilset.model.results.files.folder import subfolder, whole
 from coilset.model.results.files.opened import Run
 
 PER_ELEMENT = 2  # rings of the tube
@@ -28,8 +28,7 @@ def write_series(run: Run) -> list[Path]:
         CoilsetError: if one cannot be written.
     """
     run.require_steps()
-    folder = run.folder / "fields"
-    make(folder)
+    folder = subfolder(run.folder, "fields")
     parts = {"line": _lines(run), "wire": _wires(run), "sections": _sections(run)}
     files = []
     for name, meshes in parts.items():

@@ -10,7 +10,7 @@ from coilset.model.figures.panels.panel import GREY, Panel, axis, curve, upright
 from coilset.model.figures.png import write_png
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.nest import Pressed
-from coilset.model.results.files.folder import RESULTS, clear, make, prepare, write_summary, write_table
+from coilset.model.results.files.folder import RESULTS, clear, prepare, subfolder, write_summary, write_table
 from coilset.model.results.records.labels import plain, within
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.summary import summarise
@@ -54,12 +54,13 @@ def write(folder: Path, pressed: Pressed, force: bool = False, pictures: bool = 
         pictures: draw characteristic.png, too.
     """
     prepare(folder, force)
-    for one in (folder, *(folder / name for name in NAMES)):  # of a spring that the seats no longer reach, too
+    members = [folder / name for name in NAMES]  # of a spring that the seats no longer reach, too
+    for one in (folder, *(member for member in members if not member.is_symlink())):
         clear(one, (*RESULTS, STEPS, "report.html"))
     found = summary(pressed)
     for member in pressed.members:
         if member.result is not None:
-            make(folder / member.name)
+            subfolder(folder, member.name)
             own = {name: value for name, value in found[member.name].items() if name != "origin"}
             write_run(folder / member.name, member.setup, member.result, own, found[member.name]["origin"])
     values = pressed.plan.heights, pressed.force, *pressed.forces, pressed.clearance

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coilset.model.results.files.folder import DERIVED, clear, make, whole, write_history, write_seats, write_summary
+from coilset.model.results.files.folder import (
+    DERIVED,
+    clear,
+    subfolder,
+    whole,
+    write_history,
+    write_seats,
+    write_summary,
+)
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.results.records.summary import summarise
 from coilset.model.section.surface import component, shear
@@ -43,8 +51,7 @@ def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]
 
     from coilset.model.results.files.dataset import RESULTANTS
 
-    folder = Path(folder) / "fields"
-    make(folder)
+    folder = subfolder(folder, "fields")
     n = len(setup.turns) - 1
     cells = [("line", np.stack([np.arange(n), np.arange(1, n + 1)], axis=1))]
     for number, shot in enumerate(snapshots):

@@ -1,9 +1,12 @@
 """Where compiled functions are kept between runs, and how they are loaded."""
 
+import contextlib
 import functools
 import hashlib
 import os
+import platform
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +36,29 @@ def version() -> str:
         if b"njit" in text:
             content.update(text)
     return content.hexdigest()[:16]
+
+
+@functools.cache
+def toolchain() -> str:
+    """What machine code depends on besides its source, in hexadecimals: Python, numba, llvmlite and the processor."""
+    parts = [sys.version, sys.prefix, _processor()]
+    for package in ("numba", "llvmlite"):
+        for folder in getattr(find_spec(package), "submodule_search_locations", None) or ():
+            with contextlib.suppress(OSError):  # numba's own index has its version, too
+                parts.append((Path(folder) / "_version.py").read_text(encoding="utf-8"))
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
+
+
+def _processor() -> str:
+    """Name and abilities of the first processor, as Linux has them."""
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            lines = iter(file.readline, "\n")
+            return "".join(
+                line for line in lines if line.startswith(("vendor", "model name", "flags", "Features", "CPU"))
+            )
+    except OSError:
+        return platform.machine()
 
 
 def load_without_compiler() -> None:

@@ -1,11 +1,11 @@
-"""How kernels are compiled, and where they are kept: by the content of what they are compiled from."""
+"""How kernels are compiled, and where they are kept: by the content of what they are compiled from, and by what."""
 
 import functools
 import hashlib
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 from numba import njit
 from numba.core import caching
@@ -31,7 +31,8 @@ class ByContent(caching._CacheLocator):
     """Where numba keeps a kernel: in a folder named by the content of its file and of all that this imports.
 
     By itself numba goes by path and date of the kernel's own file. It would use old machine code after a change in a
-    file whose functions are called, and compile again what is the same in another checkout.
+    file whose functions are called, and compile again what is the same in another checkout. Environments with another
+    numba or llvmlite, which cannot read each other's code, have folders of their own.
 
     Args:
         function: the kernel in Python.
@@ -71,13 +72,14 @@ class ByContent(caching._CacheLocator):
 
 @functools.cache
 def digest(file: Path) -> str:
-    """Of the content of a file of coilset and of all that it imports of coilset, directly or not, in hexadecimals."""
+    """Of a file of coilset, all that it imports of coilset, directly or not, and what compiles it, in hexadecimals."""
     found, waiting = {file}, [file]
     while waiting:
         new = source(waiting.pop()).imported - found
         found |= new
         waiting += new
-    return hashlib.sha256(b"".join(source(path).digest for path in sorted(found))).hexdigest()[:16]
+    contents = b"".join(source(path).digest for path in sorted(found))
+    return hashlib.sha256(contents + caches.toolchain().encode()).hexdigest()[:16]
 
 
 class Source(NamedTuple):
@@ -104,6 +106,24 @@ def _files(module: str, names: str) -> Iterator[Path]:
     else:
         yield base.with_suffix(".py")
 
+
+def _none_if_damaged(owner: Any, name: str, otherwise: Callable[[], Any]) -> None:
+    """A file of the cache that cannot be read, as after a crash of the machine, is not there: it is compiled again."""
+    if (own := getattr(owner, name, None)) is None:
+        return  # a version of numba without it
+
+    @functools.wraps(own)
+    def read(*arguments: Any) -> Any:
+        try:
+            return own(*arguments)
+        except Exception:
+            return otherwise()
+
+    setattr(owner, name, read)
+
+
+_none_if_damaged(caching.IndexDataCacheFile, "_load_index", dict)
+_none_if_damaged(caching.Cache, "_load_overload", lambda: None)
 
 if PLACES is not None:
     PLACES.insert(0, ByContent)

@@ -41,13 +41,20 @@ def _open_mpi() -> int:
 @functools.cache
 def mpi_settings() -> dict[str, str]:
     """Variables for Open MPI; other kinds of MPI allow more ranks than cores by themselves and read none of these."""
-    return {
+    loopback = {"PMIX_MCA_ptl_base_if_include": "lo"} if Path("/sys/class/net/lo").exists() else {}
+    return loopback | {
         "OMPI_MCA_btl": "self,sm",  # ranks of one machine communicate through memory
         # A rank that waits gives its core away: where other programs run, the one that it waits for would else not be
         # served meanwhile.
         "OMPI_MCA_mpi_yield_when_idle": "1",
         f"PRTE_MCA_{'mapby' if _open_mpi() >= 6 else 'rmaps_default_mapping_policy'}": ":oversubscribe",
     }  # version 6 warns of the earlier name of the last
+
+
+def stay_on_this_machine() -> None:
+    """A process that is no rank of a job has Open MPI open no port; by itself it would on all interfaces."""
+    if not any(name in os.environ for name in ("OMPI_COMM_WORLD_SIZE", "PMI_RANK", "PMI_SIZE", "PMIX_RANK")):
+        os.environ.setdefault("OMPI_MCA_btl", "^tcp")
 
 
 def mpi_environment() -> dict[str, str]:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.base.style import DIVERGING, STYLE, levels
 from coilset.model.figures.png import save
-from coilset.model.results.files.folder import make
+from coilset.model.results.files.folder import subfolder
 from coilset.model.results.files.grid_file import write_grid
 from coilset.model.results.records.labels import plain
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
@@ -27,8 +27,7 @@ def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
     23 with 1 along the wire, 2 outward, 3 upward, MPa), `shear stress` in the section and `von Mises stress` (MPa),
     `plastic work` (N/mm²).
     """
-    folder = Path(folder) / "fields"
-    make(folder)
+    folder = subfolder(folder, "fields")
     lattice = analysis.lattice
     start = lattice.positions(analysis.body.start)
     for number, shot in enumerate(analysis.result.snapshots):

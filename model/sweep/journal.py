@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.errors import CoilsetError, InputError
+from coilset.model.results.files.folder import not_linked
 from coilset.model.sweep.packed import Strings
 
 SYNC_SECONDS = 1.0
@@ -30,7 +31,7 @@ class Journal:
     def __init__(self, path: str | Path, locked: bool = True) -> None:
         self.path, self._synced = Path(path), time.monotonic()
         try:
-            self._file = open(path, "ab", buffering=0)  # noqa: SIM115 (held open, and locked, until close)
+            self._file = open(path, "ab", buffering=0, opener=not_linked)  # noqa: SIM115 (held open, and locked, until close)
         except OSError as error:
             raise InputError(f"cannot be written: {error.strerror}", "", path) from None
         try:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Self
 
 from coilset.model.base.errors import InputError
+from coilset.model.results.files.folder import not_linked
 
 SILENT_SECONDS = 600.0  # after which a run on another machine that has written nothing is taken for dead
 
@@ -63,10 +64,10 @@ class Shard:
         path = (folder / self.journal).with_suffix(".running")
         owner = f"{socket.gethostname()} {os.getpid()}"
         try:
-            claim = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666)
+            claim = not_linked(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY)
         except FileExistsError:
             self._refuse_if_alive(path, folder / self.journal)
-            claim = os.open(path, os.O_WRONLY | os.O_TRUNC)
+            claim = not_linked(path, os.O_WRONLY | os.O_TRUNC)
         except OSError as error:
             raise InputError(f"cannot be written: {error.strerror}", "", path) from None
         with os.fdopen(claim, "w", encoding="utf-8") as file:

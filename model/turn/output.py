@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from coilset.model.base.style import STYLE
 from coilset.model.figures import display
 from coilset.model.figures.png import save
-from coilset.model.results.files.folder import make
+from coilset.model.results.files.folder import subfolder
 from coilset.model.results.files.grid_file import write_grid
 from coilset.model.results.records.releases import last_release
 from coilset.model.solid.output import picture
@@ -62,10 +62,10 @@ def summarise(analysis: TurnAnalysis) -> dict[str, Any]:
 
 def write_fields(folder: Path, analysis: TurnAnalysis) -> None:
     """fields/*.vtu: the deformed solid at the end of each phase, with the fields of `model.solid.output.grid`."""
-    make(folder / "fields")
+    fields = subfolder(folder, "fields")
     for number, moment in enumerate(analysis.result.moments, 1):
         if moment.body is not None:
-            write_grid(folder / "fields" / f"{number:02d}_{moment.name.replace(' ', '_')}.vtu", moment.body)
+            write_grid(fields / f"{number:02d}_{moment.name.replace(' ', '_')}.vtu", moment.body)
 
 
 def write_pictures(folder: Path, analysis: TurnAnalysis) -> None:

@@ -12,7 +12,7 @@ from coilset.model.figures.png import save
 from coilset.model.figures.series import PER_ELEMENT, tube_cells
 from coilset.model.figures.vtkhdf import write_vtkhdf
 from coilset.model.figures.wire_surface import surface
-from coilset.model.results.files.folder import make, write_table
+from coilset.model.results.files.folder import subfolder, write_table
 from coilset.model.results.records.labels import plain
 from coilset.model.section.surface import Inside
 from coilset.model.vibration.modes import Modes
@@ -33,7 +33,7 @@ def write_modes(folder: Path, modes: Modes, turns: np.ndarray, x: np.ndarray, ra
         x: positions of the stations at rest, shape (n + 1, 3), mm.
         radius: of the wire, shape (n,), mm.
     """
-    make(folder)
+    subfolder(folder.parent, folder.name)
     rows = [
         [k + 1, *map(float, (f, λ, *m))]
         for k, (f, λ, m) in enumerate(zip(modes.frequencies, modes.eigenvalues, modes.masses, strict=True))

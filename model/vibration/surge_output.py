@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
 from coilset.model.figures.png import save
-from coilset.model.results.files.folder import make, write_summary, write_table
+from coilset.model.results.files.folder import subfolder, write_summary, write_table
 from coilset.model.vibration.driven import Driven
 
 UNITS = {"time": "s", "height": "mm", "top": "N", "bottom": "N", "contacts": ""}
@@ -48,7 +48,7 @@ def write_surge(folder: Path, driven: Driven, turns: np.ndarray) -> None:
         folder: made if needed.
         turns: of the stations, shape (n,).
     """
-    make(folder)
+    subfolder(folder.parent, folder.name)
     columns = asdict(driven.fine)
     whole = _whole_turns(turns)
     names = [f"{name}_{unit}".rstrip("_") for name, unit in UNITS.items()] + [f"{name}_Nmm" for name in WORK]

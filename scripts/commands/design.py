@@ -18,7 +18,7 @@ from coilset.model.design.trade_offs import TradeOff, trade_offs
 from coilset.model.results.files.folder import clear, making
 from coilset.model.runtime.threads import usual
 from coilset.model.sweep.journal import Journal, read_records
-from coilset.scripts.terminal.console import Console, table
+from coilset.scripts.terminal.console import Console, styled, table
 from coilset.scripts.terminal.log import run_log
 from coilset.scripts.terminal.target import results_folder
 
@@ -102,7 +102,7 @@ def _conclude(console: Console, solution: Solution, rows: list[TradeOff], folder
         _list(console, solution.options)
     for name, words, value in zip(search.evaluator.names, search.evaluator.named, found.x, strict=True):
         entry = "" if words.words == name else f"  ({name})"
-        console.print(f"[bold]{words.words} = {value:.7g} {words.unit}".rstrip() + f"[/]{entry}", highlight=False)
+        console.print(styled("bold", f"{words.words} = {value:.7g} {words.unit}".rstrip(), entry))
     for one, value, off in zip(search.conditions, found.best.values, found.off, strict=True):
         if not found.met or one.sense:
             missed = f", missed by {one.deviation(one.missed(off))}" if abs(one.missed(off)) > TOLERANCE else ""

@@ -43,14 +43,13 @@ def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     """Print a material's constants and draw k², ζ and 2Gκ over the plastic work."""
     from coilset.model.material import library
     from coilset.model.material.identification import figures
-    from coilset.scripts.terminal.console import Console
+    from coilset.scripts.terminal.console import Console, styled
 
     law = library.load(material)
     picture = files_to_write(out, law.name, force, "functions.png")[0]
     console = Console()
-    console.print(
-        f"[bold]{law.name}[/]: {law.data.description}\nsource: {law.data.source}\nvalid: {law.data.validity.remark}"
-    )
+    about = f": {law.data.description}\nsource: {law.data.source}\nvalid: {law.data.validity.remark}"
+    console.print(styled("bold", law.name, about))
     console.print(_constants(law))
     write_picture(figures.material_functions(law), picture, console)
 

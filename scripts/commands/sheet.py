@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from mpi4py import MPI
+from rich.text import Text
 
 from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError, naming
@@ -32,7 +33,7 @@ from coilset.model.standards.wires.library import files, own_folder
 from coilset.model.standards.wires.wire_file import Surface
 from coilset.model.standards.wires.words import WIRE_COLUMNS, described, table_row
 from coilset.model.standards.working_warnings import presetting_warning
-from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.console import Console, styled
 from coilset.scripts.terminal.target import SHEETS, results_folder
 
 FIGURE = "goodman.png"
@@ -113,9 +114,10 @@ def _print(console: Console, case: Case, spring: Spring, made: Sheet, results: s
         before = [f"the run {results} is of another load program: {_listed(other)}"]
         console.warn(before[0])
     beside = f"{'run':>9}  " if run else ""
-    console.print(f"  {'':{width}} {'formula':>9} {'':5} {beside}[dim]how it is computed; check[/]", soft_wrap=True)
+    head = f"  {'':{width}} {'formula':>9} {'':5} {beside}"
+    console.print(styled("dim", "how it is computed; check", before=head), soft_wrap=True)
     for title, rows in parts:
-        console.print(f"[bold]{title}[/]")
+        console.print(styled("bold", title))
         for line in _lines(rows, run is not None, width):
             console.print(line, soft_wrap=True)
     if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
@@ -184,9 +186,9 @@ def list_wires(name: str | None = None) -> None:
     console = Console()
     if name is not None:
         known = wire(name)
-        console.print(f"[bold]{known.name}[/], d in mm")
+        console.print(styled("bold", known.name, ", d in mm"))
         for label, number, citation in described(known):
-            console.print(f"  {label:29} {number}\n  {'':29} [dim]{citation}[/]", soft_wrap=True)
+            console.print(styled("dim", citation, before=f"  {label:29} {number}\n  {'':29} "), soft_wrap=True)
         for missing in files()[known.standard].missing:
             console.print(f"  not found: {missing}", soft_wrap=True)
         return
@@ -217,7 +219,7 @@ def _warnings(case: Case, spring: Spring, made: Sheet) -> list[Warning]:
     return warnings
 
 
-def _lines(rows: Sequence[Row], beside: bool, width: int) -> Iterator[str]:
+def _lines(rows: Sequence[Row], beside: bool, width: int) -> Iterator[Text]:
     """Text of a section: label, value, unit, result, formula and how it was checked; reasons on lines below."""
     units = max([4, *(len(row.unit) for row in rows)]) + 1
     for row in rows:
@@ -226,11 +228,12 @@ def _lines(rows: Sequence[Row], beside: bool, width: int) -> Iterator[str]:
             f"  {row.label:{width}} {_number(row.value):>9} {row.unit:{units}}",
             f"{found:>9}  " if beside else "",
             f"{row.formula}  " if row.formula else "",
-            f"[dim]{row.sure}[/]" if row.sure else "",
         ]
-        yield "".join(parts).rstrip()
+        line = styled("dim", row.sure, before="".join(parts))
+        line.rstrip()
+        yield line
         if row.why and (row.found is not None or row.value is None):
-            yield f"  {'':{width}} [dim]{row.why}[/]"
+            yield styled("dim", row.why, before=f"  {'':{width}} ")
 
 
 def _number(value: float | None) -> str:

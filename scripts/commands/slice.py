@@ -97,13 +97,14 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
         [
             ("free length before", quantity(summary["free_length_before_mm"], "mm")),
             ("free length after", quantity(summary["free_length_after_mm"], "mm")),
-            ("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]"),
+            ("set", quantity(summary["set_mm"], "mm")),
             ("initial rate", quantity(summary["rate_N_per_mm"], "N/mm")),
             ("maximum force", quantity(summary["force_max_N"], "N", 2)),
             ("shear stress, inside of coil, loaded", quantity(summary["shear_inside_max_MPa"], "MPa", 2)),
             ("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2)),
             ("residual shear stress, inside of coil", quantity(summary["residual_shear_inside_MPa"], "MPa", 2)),
-        ]
+        ],
+        bold="set",
     )
     console.say(NOTE)
     console.say(f"  results in {out}{os.sep}", whole=True)

@@ -7,12 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from mpi4py import MPI
-from rich.markup import escape
 from rich.table import Table
 
 from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.results.files.folder import make, whole
-from coilset.scripts.terminal.console import Console, table
+from coilset.scripts.terminal.console import Console, styled, table
 from coilset.verification import registry
 from coilset.verification.page import page, percent
 from coilset.verification.study import Check, Study
@@ -55,7 +54,8 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
             before = Path(page_file).read_text(encoding="utf-8") if Path(page_file).exists() else ""
             path.write_text(page(out, before), encoding="utf-8")
     off = [name for name, study in found.items() if not study.passed]
-    console.print(f"[red]off: {', '.join(off)}[/]" if off else "[green]all judged numbers within tolerance[/]")
+    met = styled("green", "all judged numbers within tolerance")
+    console.print(styled("red", f"off: {', '.join(off)}") if off else met)
     return 1 if off else 0
 
 
@@ -69,13 +69,13 @@ def show() -> None:
 def _run(case: registry.Case, folder: Path, console: Console) -> Study:
     """The Study of a case, written."""
     length = "" if case.fast else " (slow: up to several minutes)"
-    console.rule(f"[bold]{case.name}[/]: {case.title}{length}", align="left")
+    console.rule(styled("bold", case.name, f": {case.title}{length}"), align="left")
     study, began = Study(folder), time.perf_counter()
     try:
         case.run(study)
     except (CoilsetError, RuntimeError) as error:
         study.stopped = str(error)
-        console.print(f"[red]{escape(study.stopped)}[/]")
+        console.print(styled("red", study.stopped))
     study.write(case.name)
     for one in study.tables:
         rows = (["" if value is None else _number(value) for value in row] for row in one["rows"])
@@ -98,7 +98,7 @@ def _all_checks(found: Mapping[str, Study]) -> Table:
             row = [name, check.quantity, _number(check.ours), *_limits(check), check.verdict, check.source]
             made.add_row(*row, style=style)
         if study.stopped:
-            made.add_row(name, "", "", "", "", "", escape(f"stopped: {study.stopped}"), "", style="red")
+            made.add_row(name, "", "", "", "", "", f"stopped: {study.stopped}", "", style="red")
     return made
 
 

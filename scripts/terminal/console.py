@@ -1,11 +1,19 @@
-"""The console of all commands: names and messages are printed as they are, though brackets in them look like markup."""
+"""The console of all commands: texts are printed as they are, though brackets in them may look like rich's markup.
+
+What is to stand out is a `styled` text: names and words of files are never read as markup.
+"""
 
 from collections.abc import Iterable
 from typing import Any
 
 from rich import console
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
+
+
+def styled(style: str, text: str, rest: str = "", before: str = "") -> Text:
+    """A text in one of rich's styles, such as `bold`, with the rest of its line and what is before it."""
+    return Text.assemble(before, (text, style), rest)
 
 
 def table(
@@ -33,28 +41,33 @@ def table(
 
 
 class Console(console.Console):
-    """As rich's, which highlights nothing; what is printed with `print` may have rich's markup.
+    """As rich's, which highlights nothing and reads no markup.
 
     Args:
         options: of rich's.
     """
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(highlight=False, **options)
+        super().__init__(highlight=False, markup=False, **options)
 
     def say(self, text: str, whole: bool = False) -> None:
         """A line with names of the user's, wrapped at the width of the console unless it stays whole."""
-        self.print(text, markup=False, soft_wrap=whole)
+        self.print(text, soft_wrap=whole)
 
-    def pairs(self, rows: Iterable[tuple[str, str]]) -> None:
-        """Names and values, in two columns without heads; long values are wrapped rather than names."""
+    def pairs(self, rows: Iterable[tuple[str, str]], bold: str = "\n") -> None:
+        """Names and values, in two columns without heads; long values are wrapped rather than names.
+
+        Args:
+            rows: of the table.
+            bold: how the names of those begin that stand out.
+        """
         rows = list(rows)
         made = Table(show_header=False, box=None, padding=(0, 2))
         made.add_column(no_wrap=all(len(name) <= self.width // 2 for name, _ in rows))
         for row in rows:
-            made.add_row(*row)
+            made.add_row(*row, style="bold" if row[0].startswith(bold) else "")
         self.print(made)
 
     def warn(self, text: str, kind: str = "warning") -> None:
         """A warning, or another line that begins with its kind."""
-        self.print(f"[yellow]{kind}:[/] {escape(text)}")
+        self.print(styled("yellow", f"{kind}:", f" {text}"))

@@ -5,15 +5,20 @@ import fcntl
 import logging
 import os
 from collections.abc import Iterator
+from io import TextIOWrapper
 from pathlib import Path
 
 from coilset.model.base.errors import CoilsetError, InputError
+from coilset.model.results.files.folder import not_linked
 
 # Without one, Python would print warnings of ranks that keep no log.
 logging.getLogger("coilset").addHandler(logging.NullHandler())
 
 
 class _Handler(logging.FileHandler):
+    def _open(self) -> TextIOWrapper:
+        return open(self.baseFilename, self.mode, encoding=self.encoding, opener=not_linked)
+
     def handleError(self, record: logging.LogRecord) -> None:
         """A full disk is reported where results are written; the log merely loses lines."""
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
+from rich.text import Text
 
 from coilset.model.case.phases import drives_at
 from coilset.model.contact.base import SEAT_DOFS
@@ -19,7 +20,7 @@ from coilset.model.results.records.labels import held_matters, largest_errors, l
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.results.records.units import quantity as name_and_unit
 from coilset.model.run.analysis import Analysis
-from coilset.scripts.terminal.console import Console, table
+from coilset.scripts.terminal.console import Console, styled, table
 
 if TYPE_CHECKING:  # not where a rod is solved
     from coilset.model.slice.analysis import SliceStep
@@ -80,12 +81,12 @@ class Lines:
 
     def step(self, step: Step) -> None:
         """A step has been found."""
-        cuts = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else ""
+        cuts, left = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else "", ""
         if step.left_branch:
-            cuts += "  [yellow]snapped[/]" if step.released_energy_Nmm else "  [yellow]left its path[/]"
+            left = "  snapped" if step.released_energy_Nmm else "  left its path"
         touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
-        row = f"{self._row(step)}{step.contacts:7d}  {touching}{cuts}{self._left(step)}"
-        self.console.print(row, soft_wrap=True)
+        row = f"{self._row(step)}{step.contacts:7d}  {touching}{cuts}"
+        self.console.print(Text.assemble(row, (left, "yellow"), (self._left(step), "dim")), soft_wrap=True)
 
     def _row(self, step: Step) -> str:
         if not self._turned:
@@ -99,7 +100,7 @@ class Lines:
             self._began, self._from = time.monotonic(), done
         spent = time.monotonic() - self._began
         left = spent * (1.0 - done) / max(done - self._from, 1e-9)
-        return "" if spent < SOON or left < SOON else f"  [dim]{duration(left)} left[/]"
+        return "" if spent < SOON or left < SOON else f"  {duration(left)} left"
 
     def iterations(self) -> contextlib.AbstractContextManager[None]:
         """Context of the iterations of a run."""
@@ -108,7 +109,7 @@ class Lines:
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """Print the results."""
         rows = pressed_rows(summary) if summary["turn_max_deg"] is None else _turned(summary)
-        self.console.pairs(rows)
+        self.console.pairs(rows, bold="set")
         if summary["working"]:
             self.console.print(working_table(summary["working"]))
         for limit in summary["limits"]:
@@ -253,14 +254,15 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
     return made
 
 
-def limit_line(limit: Mapping[str, Any]) -> str:
+def limit_line(limit: Mapping[str, Any]) -> Text:
     """Whether a limit is met, and by how much."""
     words, unit = name_and_unit(limit["name"])
     bounds = f"{limit['low']:.5g} to {limit['high']:.5g} {unit}"
     if limit["value"] is None:
-        return f"  {words}: no such result; limits {bounds}"
-    side = "met, within by" if limit["met"] else "[bold red]not met[/], outside by"
-    return f"  {words} {limit['value']:.5g} {unit}: limits {bounds} {side} {abs(limit['margin']):.3g} {unit}"
+        return Text(f"  {words}: no such result; limits {bounds}")
+    side = ("met", ", within by") if limit["met"] else (("not met", "bold red"), ", outside by")
+    value, margin = f"  {words} {limit['value']:.5g} {unit}: limits {bounds} ", f" {abs(limit['margin']):.3g} {unit}"
+    return Text.assemble(value, *side, margin)
 
 
 def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:
@@ -293,7 +295,7 @@ class _Handler(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print it, fainter than the steps."""
-        self.console.print(f"[dim]{record.getMessage()}[/]", soft_wrap=True)
+        self.console.print(styled("dim", record.getMessage()), soft_wrap=True)
 
 
 def _beyond_coil(summary: Mapping[str, Any], name: str) -> Iterator[tuple[str, str]]:
@@ -320,7 +322,7 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     last = "free length after the last release" if earlier or len(summary["releases"]) > 1 else "free length after"
     yield last, within(summary["free_length_after_mm"], of_set, "mm", 4)
     at = f", release in step {earlier[0]} of {earlier[1]}" if earlier else ""
-    yield f"[bold]set{at}[/]", f"[bold]{within(summary['set_mm'], of_set, 'mm', 4)}[/]"
+    yield f"set{at}", within(summary["set_mm"], of_set, "mm", 4)
     if held_matters(summary):
         moment = quantity(summary["end_moment_held_Nmm"], "N mm", 0)
         yield "  before its ends are let go", f"{quantity(summary['set_held_mm'], 'mm', 4)}, held with {moment}"
@@ -353,7 +355,7 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 def _turned(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Rows of a torsion spring."""
     of_set = summary["estimated_turn_set_error_deg"]
-    yield "[bold]set[/]", f"[bold]{within(summary['turn_set_deg'], of_set, '°', 3)}[/]"
+    yield "set", within(summary["turn_set_deg"], of_set, "°", 3)
     given = summary["torque_max_is_given"]
     error = summary["estimated_turn_error_deg"] if given else None
     yield "largest rotation", within(summary["turn_max_deg"], error, "°", 3)

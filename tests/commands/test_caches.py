@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import types
 from pathlib import Path
 
 import pytest
@@ -73,6 +74,40 @@ def test_a_kernel_is_kept_by_all_that_it_imports(sources):
     assert kernels.digest(caller) not in (first, None)
 
 
+def test_environments_with_other_compilers_share_none(sources, monkeypatch):
+    file = sources("model/caller.py", "def f(): pass")
+    found = set()
+    for version in ("numba 1", "numba 2"):
+        kernels.digest.cache_clear()
+        monkeypatch.setattr(caches, "toolchain", lambda version=version: version)
+        found.add(kernels.digest(file))
+    assert len(found) == 2
+
+
+def test_the_toolchain_is_that_of_this_process():
+    """Its versions are read without an import of numba, which `coilset --help` would wait for."""
+    program = (
+        "import sys; from coilset.model.runtime.caches import toolchain; print(toolchain(), 'numba' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == [caches.toolchain(), "False"]
+
+
+@pytest.mark.parametrize("file", ["sys.version", "sys.prefix", "numba", "llvmlite", "processor"])
+def test_each_part_of_the_toolchain_counts(monkeypatch, tmp_path, file):
+    before = caches.toolchain.__wrapped__()
+    if file == "processor":
+        monkeypatch.setattr(caches, "_processor", lambda: "another")
+    elif file.startswith("sys."):
+        monkeypatch.setattr(sys, file[4:], "another")
+    else:
+        own = caches.find_spec
+        (tmp_path / "_version.py").write_text("version = 'another'")
+        other = types.SimpleNamespace(submodule_search_locations=[str(tmp_path)])
+        monkeypatch.setattr(caches, "find_spec", lambda name: other if name == file else own(name))
+    assert caches.toolchain.__wrapped__() != before
+
+
 def test_checkouts_share_kernels(sources, monkeypatch, tmp_path):
     """And all that is coilset's has such a place."""
     places = []
@@ -140,6 +175,24 @@ def test_what_is_loaded_becomes_part_of_callers_that_are_compiled_later(tmp_path
     assert run(LOAD)[1] == "0"
     assert run(CALL, "add") == ["12.0", "1", "0"]
     assert run(CALL) == ["12.0", "0", "1"]
+
+
+@pytest.mark.parametrize("suffix", [".nbi", ".nbc"])
+@pytest.mark.parametrize(
+    "damage", [lambda data: b"", lambda data: data[: len(data) // 2], lambda data: bytes(len(data))]
+)
+def test_what_cannot_be_read_is_compiled_again(tmp_path, suffix, damage):
+    """And kept: the next process loads it."""
+    run = with_functions_kept_in(tmp_path, str(tmp_path / "cache"))
+    program = "import coilset.model.runtime.kernels\n" + LOAD
+    assert run(program)[:2] == ["6.0", "0"]
+    assert run(program)[:2] == ["6.0", "1"]
+    kept = list((tmp_path / "cache").rglob(f"*{suffix}"))
+    assert kept
+    for path in kept:
+        path.write_bytes(damage(path.read_bytes()))
+    assert run(program)[:2] == ["6.0", "0"]
+    assert run(program)[:2] == ["6.0", "1"]
 
 
 def with_functions_kept_in(folder, cache):

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from coilset.model.base.errors import InputError
-from coilset.model.runtime.processes import mpi_environment, mpirun
+from coilset.model.runtime.processes import mpi_environment, mpirun, stay_on_this_machine
 from coilset.scripts.ranks import RULER, MpirunMessages, check
 
 
@@ -82,3 +82,41 @@ def test_ranks_print_colours_on_a_terminal_only(tmp_path):
     seen = os.environ | {"TERM": "xterm-256color"}
     done = subprocess.run(command, capture_output=True, text=True, check=True, env=seen)
     assert done.stdout.split() == ["here", "here"]
+
+
+LISTENING = """
+from coilset.model.runtime.processes import stay_on_this_machine
+stay_on_this_machine()
+from mpi4py import MPI
+import os
+from pathlib import Path
+MPI.COMM_WORLD.barrier()
+mine = set()
+for number in Path("/proc/self/fd").iterdir():
+    try:
+        mine.add(os.readlink(number).removeprefix("socket:[").removesuffix("]"))
+    except OSError:
+        pass
+for kind in ("tcp", "tcp6"):
+    rows = [row.split() for row in Path(f"/proc/net/{kind}").read_text().splitlines()[1:]]
+    print(*(row[1] for row in rows if row[3] == "0A" and row[9] in mine), end="")
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_no_rank_listens(ranks, monkeypatch):
+    """By itself Open MPI waits for other machines, on all interfaces, also with one rank."""
+    monkeypatch.delenv("OMPI_MCA_btl", raising=False)
+    start = mpirun(ranks) if ranks > 1 else []
+    environment = mpi_environment() if ranks > 1 else os.environ
+    command = [*start, sys.executable, "-c", LISTENING]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout == ""
+
+
+def test_a_job_of_the_users_own_mpirun_keeps_its_network(monkeypatch):
+    """It may have ranks on other machines; so may a program that `coilset python` runs."""
+    monkeypatch.delenv("OMPI_MCA_btl", raising=False)
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    stay_on_this_machine()
+    assert "OMPI_MCA_btl" not in os.environ

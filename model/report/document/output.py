@@ -9,7 +9,8 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
+from coilset.model.base.columns import as_text
+from coilset.model.base.style import STYLE, as_written
 from coilset.model.report.document.content import Document
 from coilset.model.report.document.dxf import dxf
 from coilset.model.report.document.pages import pages
@@ -33,6 +34,7 @@ def _pdf(made: Document) -> bytes:
     file = io.BytesIO()
     with mpl.rc_context({**STYLE, "pdf.fonttype": 42}), PdfPages(file, metadata={"CreationDate": None}) as pdf:
         for figure in pages(made):
+            as_written(figure)
             pdf.savefig(figure)
     return file.getvalue()
 
@@ -54,6 +56,7 @@ def _svg(figure: Figure, salt: str) -> str:
     """A figure as an element of a page; the salt keeps its identifiers apart from those of other figures."""
     file = io.StringIO()
     with mpl.rc_context({**STYLE, "svg.fonttype": "none", "svg.hashsalt": salt}):
+        as_written(figure)
         figure.savefig(file, format="svg", metadata={"Date": None, "Creator": None})
     text = file.getvalue()
     return text[text.index("<svg") :]
@@ -63,13 +66,13 @@ def _csv(made: Document) -> bytes:
     """A table; in German between semicolons, with decimal commas, as spreadsheets there read it."""
     file = io.StringIO()
     rows = csv.writer(file, delimiter=";" if made.words.language == "de" else ",", lineterminator="\n")
-    rows.writerow(["", made.title, made.basis, "", ""])
-    rows.writerows(["", name, value, "", ""] for name, value in made.head)
+    rows.writerow(as_text(["", made.title, made.basis, "", ""]))
+    rows.writerows(as_text(["", name, value, "", ""]) for name, value in made.head)
     rows.writerow(["", "", made.words("formula"), made.words("run"), ""])
     for title, lines in made.tables:
         for line in lines:
             numbers = (text.replace("−", "-") for text in (line.value, line.found))
-            rows.writerow([title, line.label.strip(), *numbers, line.unit])
+            rows.writerow(as_text([title, line.label.strip(), *numbers, line.unit]))
     return file.getvalue().encode("utf-8-sig")
 
 

@@ -93,9 +93,11 @@
     byId("on").disabled = start + each >= left.length;
   };
   // A link to a blob of the cases that pass the filters, with all columns, made when it is used.
+  // A word that a spreadsheet would take for a formula gets an apostrophe.
+  const plain = (value) => typeof value === "string" && /^\s*[=+\-@]./.test(value) && Number.isNaN(+value) ? `'${value}` : String(value);
   const quoted = (value) => /[",\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value;
   const csv = () => [columns.map((column) => column.name), ...left.map((row) => columns.map((column) => column.values[row] ?? ""))]
-    .map((cells) => cells.map((cell) => quoted(String(cell))).join(",")).join("\n") + "\n";
+    .map((cells) => cells.map((cell) => quoted(plain(cell))).join(",")).join("\n") + "\n";
   let blob = null;
   byId("table").addEventListener("click", () => {
     if (blob) URL.revokeObjectURL(blob);

@@ -22,7 +22,7 @@ from coilset.model.equilibrium.path.step_sizes import Position
 from coilset.model.equilibrium.settings import Drive
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.results.files import state_file
-from coilset.model.results.files.folder import make, whole
+from coilset.model.results.files.folder import subfolder, whole
 from coilset.model.results.files.step_journal import StepJournal
 from coilset.model.results.records.provenance import changed, provenance
 from coilset.model.results.records.record import BucklingMode, Result, Snapshot
@@ -80,7 +80,7 @@ class Checkpoint:
             "snapshots": len(result.snapshots),
         }
         mode = asdict(result.mode) if result.mode is not None else {}
-        make(self.folder)
+        subfolder(self.folder.parent, self.folder.name)
         self.journal.append(result.steps, result.seats, result.frames)
         for number, snapshot in enumerate(result.snapshots[self._snapshots :], self._snapshots):
             self._save_snapshot(number, snapshot)

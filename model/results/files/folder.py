@@ -10,10 +10,20 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
+from coilset.model.base.columns import as_text
 from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.results.records.record import SeatReactions, Step
 
-RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint*/*.npz", "checkpoint*/*.jsonl")
+UNFINISHED = ".*.partial*"  # of a run that was killed, see `whole`
+RECORDS = (
+    "summary.json",
+    "history.csv",
+    "seats.csv",
+    "points.nc",
+    "checkpoint*/*.npz",
+    "checkpoint*/*.jsonl",
+    UNFINISHED,
+)
 DERIVED = (
     "fields/*.vtu",
     "fields/*.pvd",
@@ -38,18 +48,28 @@ DRAWN = ("drawing.png", "spring.png")
 """Pictures of the unloaded spring by `coilset mesh`."""
 
 
+def not_linked(path: str | Path, flags: int) -> int:
+    """Opener of a file of results that is written in place: a link there, which may lead anywhere, is an OSError."""
+    return os.open(path, flags | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
+
+
 @contextlib.contextmanager
 def whole(path: str | Path) -> Iterator[Path]:
     """A temporary path, moved to `path` once it is complete; a full disk is reported in one line.
+
+    Its name cannot be foreseen: a folder that somebody sent has no link of this name.
 
     Raises:
         CoilsetError: if the file cannot be written.
     """
     path = Path(path)
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    partial = path.with_name(f".{os.urandom(8).hex()}.partial{path.suffix}")
     try:
+        os.close(not_linked(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
         yield partial
-        if not partial.exists():  # VTK reports nothing, and removes a file that it could not finish
+        if (
+            not partial.exists() or not partial.stat().st_size
+        ):  # VTK reports nothing, and removes what it did not finish
             raise OSError(errno.EIO, "nothing of it was written; is the disk full?")
         os.replace(partial, path)
     except OSError as error:
@@ -68,6 +88,19 @@ def make(folder: str | Path) -> None:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise CoilsetError(f"{folder}: cannot be made: {error.strerror}") from None
+
+
+def subfolder(folder: str | Path, name: str) -> Path:
+    """Make a folder within one of results, unless it exists.
+
+    Raises:
+        CoilsetError: if it cannot be made, or is a link, through which a run would replace what is elsewhere.
+    """
+    path = Path(folder) / name
+    if path.is_symlink():
+        raise CoilsetError(f"{path}: is a link, and results are written into folders only; remove it")
+    make(path)
+    return path
 
 
 @contextlib.contextmanager
@@ -169,6 +202,8 @@ def clear(folder: str | Path, patterns: Sequence[str] = RESULTS) -> None:
     """
     for pattern in patterns:
         for path in Path(folder).glob(pattern):
+            if path.parent != Path(folder) and path.parent.is_symlink():
+                continue  # not of a run's: it makes no links
             try:
                 path.unlink()
             except OSError as error:
@@ -201,5 +236,5 @@ def write_table(target: Path, columns: Sequence[str], rows: Iterable[Iterable[ob
     """
     with whole(target) as path, open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(columns)
-        writer.writerows(rows)
+        writer.writerow(as_text(columns))
+        writer.writerows(map(as_text, rows))

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.errors import CoilsetError
+from coilset.model.results.files.folder import not_linked
 from coilset.model.results.records.frame import Frame
 from coilset.model.results.records.record import SeatReactions, Step
 
@@ -33,7 +34,7 @@ class StepJournal:
         new = zip(*(records[self._written :] for records in (steps, seats, frames)), strict=True)
         lines = "".join(_line(*records) for records in new).encode()
         try:
-            with open(self.path, "r+b" if self._length else "wb") as file:
+            with open(self.path, "r+b" if self._length else "wb", opener=not_linked) as file:
                 file.truncate(self._length)  # written by a killed run after its last state
                 file.seek(self._length)
                 file.write(lines)

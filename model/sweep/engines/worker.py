@@ -23,12 +23,13 @@ def main() -> None:
     load_without_compiler()
     from mpi4py import MPI
 
+    from coilset.model.results.files.folder import not_linked
     from coilset.model.sweep.evaluate import evaluate_in_worker
 
     first = sys.stdin.readline()
     if not first:
         return
-    log = os.open(json.loads(first), os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+    log = not_linked(json.loads(first), os.O_WRONLY | os.O_APPEND | os.O_CREAT)
     for output in (1, 2):
         os.dup2(log, output)
     for line in sys.stdin:

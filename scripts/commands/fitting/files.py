@@ -4,7 +4,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coilset.scripts.terminal.target import results_folder
+from coilset.model.base.errors import InputError
+from coilset.scripts.terminal.target import UNFIT, results_folder
 
 if TYPE_CHECKING:  # commands load what they need
     from matplotlib.figure import Figure
@@ -16,10 +17,12 @@ def files_to_write(out: str | None, name: str, force: bool, *files: str) -> list
     """Files that a command will write, in `out`, by default results/material/NAME: found before it computes any.
 
     Raises:
-        InputError: one is there, and not to be overwritten.
+        InputError: one is there, and not to be overwritten, or the name would lead to another folder.
     """
     from coilset.model.results.files.folder import refuse_to_replace
 
+    if leading := next((file for file in files if UNFIT.search(file)), ""):
+        raise InputError(f"'{leading}' is no name of a file; a material's name has no /", "--name")
     folder = results_folder(out, name, "material")
     paths = [folder / file for file in files]
     refuse_to_replace(paths, force)
