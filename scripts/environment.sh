@@ -24,8 +24,10 @@ fail() { say "$*"; exit 2; }
 hear_interrupts() { trap 'exit 130' INT; }
 
 packages() { tr '\n' ' ' < "$scripts/packages.txt"; }
-# They bring no dependencies: what they need is among the packages, which pip would replace.
-wheels() { printf 'python3 -m pip install --break-system-packages --no-deps %s' "$(tr '\n' ' ' < "$scripts/wheels.txt")"; }
+# Wheels of PyPI are installed as they were when they were chosen, by their digests: those for Python 3.13 and 3.14. They
+# bring no dependencies: what they need is among the packages, which pip would replace.
+wheels=(python3 -m pip install --break-system-packages --no-deps --only-binary :all: --require-hashes --requirement)
+listed() { sed 's/==.*//' "$scripts/packages.txt" "$scripts/wheels.txt" | sort -u; } # names of both
 
 # What was found is kept beside the checkout's link in the cache folder, one record for each python3 of the PATH: the
 # kind, the Python, and facts: files and folders that must be there and not be newer than the record.
@@ -131,8 +133,7 @@ install_here() {
     quietly apt-get update
     # shellcheck disable=SC2046
     quietly apt-get install -y --no-install-recommends $(packages)
-    # shellcheck disable=SC2046
-    (quietly $(wheels)) || say "PyPI was not reached: sweeps write no Parquet file"
+    (quietly "${wheels[@]}" "$scripts/wheels.txt") || say "PyPI was not reached: sweeps write no Parquet file"
 }
 
 progress() { # of an installation, in per cent by its log: each package is unpacked and set up; nothing before that

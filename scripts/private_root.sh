@@ -6,11 +6,13 @@ case "${COILSET_RELEASE:-trixie}" in
     *) private_root=$COILSET_CACHE/debian-$COILSET_RELEASE ;;
 esac
 record=/etc/coilset-packages # in the private root: what was installed there
-# Mirrors of releases in the making are often older than the week that their lists are valid for. Kept in the root.
-may_be_old='Acquire::Check-Valid-Until "false"'
+# Signed lists are valid for a week, lest a mirror gives old ones, with packages whose faults are known. Mirrors of
+# releases in the making are often older, but not by more than a month.
+least_validity=0
+[ "${COILSET_RELEASE:-trixie}" = trixie ] || least_validity=$((30 * 24 * 3600)) # s
 
 private_root_complete() { # has the private root every package? It may have more: checkouts of all ages share it
-    [ -f "$private_root$record" ] && ! sort -u "$scripts/packages.txt" "$scripts/wheels.txt" | grep -qvxFf "$private_root$record"
+    [ -f "$private_root$record" ] && ! listed | grep -qvxFf "$private_root$record"
 }
 
 make_private_root() {
@@ -40,9 +42,10 @@ make_it_anew() {
     say "making a private Debian ($release) with DOLFINx and the rest in"
     say "$private_root (once, some minutes, 3.5 GB; delete the folder to be rid of it) ..."
     discard "$partial"
-    quietly mmdebstrap --verbose --variant=minbase --aptopt="$may_be_old" --include="$(packages | tr ' ' ',')" "$release" "$partial"
+    quietly mmdebstrap --verbose --variant=minbase \
+        --aptopt="Acquire::Min-ValidTime \"$least_validity\"" --include="$(packages | tr ' ' ',')" "$release" "$partial"
     add_wheels "$partial"
-    sort -u "$scripts/packages.txt" "$scripts/wheels.txt" -o "$partial$record"
+    listed > "$partial$record"
     rm -rf "$private_root"
     mv "$partial" "$private_root"
     say "the environment is ready"
@@ -61,23 +64,24 @@ add_packages() { # to a private root that is there: a minute at most, where a ne
     say "adding packages to $private_root (once, less than a minute) ..."
     (quietly add_all) || { say "making it anew instead"; return 1; }
     add_wheels "$private_root"
-    sort -u "$scripts/packages.txt" "$scripts/wheels.txt" "$private_root$record" -o "$private_root$record"
+    listed | sort -u - "$private_root$record" -o "$private_root$record"
 }
 
 add_all() {
+    local update=(apt-get update -o Acquire::Check-Valid-Until=true -o "Acquire::Min-ValidTime=$least_validity")
     # shellcheck disable=SC2046
-    in_root "$private_root" dpkg --configure -a && in_root "$private_root" apt-get update &&
+    in_root "$private_root" dpkg --configure -a && in_root "$private_root" "${update[@]}" &&
         in_root "$private_root" apt-get install -y --no-install-recommends $(packages) && in_root "$private_root" apt-get clean
 }
 
 in_root() { # as root in a folder; certificates are this machine's
     bwrap --bind "$1" / --ro-bind /etc/resolv.conf /etc/resolv.conf --ro-bind-try /etc/ssl /etc/ssl --dev /dev --proc /proc \
-        --setenv PATH /usr/sbin:/usr/bin:/sbin:/bin --setenv HOME /root --setenv DEBIAN_FRONTEND noninteractive -- "${@:2}"
+        --ro-bind "$scripts" /mnt --setenv PATH /usr/sbin:/usr/bin:/sbin:/bin --setenv HOME /root \
+        --setenv DEBIAN_FRONTEND noninteractive -- "${@:2}"
 }
 
 add_wheels() { # what Debian does not have, from PyPI; coilset runs without it, and says what is missing when it is needed
-    # shellcheck disable=SC2046
-    (quietly in_root "$1" $(wheels)) || say "PyPI was not reached: sweeps write no Parquet file"
+    (quietly in_root "$1" "${wheels[@]}" /mnt/wheels.txt) || say "PyPI was not reached: sweeps write no Parquet file"
 }
 
 # The private root brings its own system folders; every other folder of this machine is seen through, and nothing can be

@@ -2,8 +2,9 @@
 
 This process remains the parent of mpirun. Open MPI's mpirun ends the ranks on SIGINT and SIGTERM, but passes SIGUSR1 on
 to them. Signals are therefore converted to SIGUSR1, on which a solve ends after its step and keeps its results, as on
-one rank. mpirun drops a signal that comes before it has started the ranks, so a file is left for them as well. A reader
-that closes our output (`| head`) counts as a signal too. Messages of mpirun about ranks that ended with one of our exit
+one rank. SIGTERM leaves them HURRY seconds for that; then they are ended, and the checkpoint has the steps before.
+mpirun drops a signal that comes before it has started the ranks, so a file is left for them as well. A reader that
+closes our output (`| head`) counts as a signal too. Messages of mpirun about ranks that ended with one of our exit
 codes are suppressed, because the ranks have reported the reason in one line.
 """
 
@@ -23,6 +24,7 @@ from coilset.scripts.interrupt import INTERRUPTED, STOPPED
 
 PARALLEL = ("solve", "solid", "sweep", "python")
 RANKS_A_CORE = 4
+HURRY = 15  # seconds; batch systems leave some 30
 OUTPUT_CLOSED = 128 + signal.SIGPIPE
 OWN = (0, 2, 3, INTERRUPTED, OUTPUT_CLOSED)  # exit codes with a message of ours
 RULER = b"-" * 74  # rulers around mpirun's messages
@@ -75,14 +77,20 @@ def _run(command: list[str], environment: dict[str, str], stopped: Path) -> int:
         with contextlib.suppress(ProcessLookupError):
             process.send_signal(signal.SIGUSR1)
 
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: stop(INTERRUPTED))
+    def hurry(*_: object) -> None:
+        stop(INTERRUPTED)
+        signal.alarm(HURRY)
+
+    signal.signal(signal.SIGINT, lambda *_: stop(INTERRUPTED))
+    signal.signal(signal.SIGTERM, hurry)
+    signal.signal(signal.SIGALRM, lambda *_: process.terminate())
     messages = MpirunMessages(sys.stderr.buffer)
     pumps = [
         _pump(process.stdout, sys.stdout.buffer, lambda: stop(OUTPUT_CLOSED)),
         _pump(process.stderr, messages, lambda: None),
     ]
     code = process.wait()
+    signal.alarm(0)
     for pump in pumps:
         pump.join()
     if stops and code:

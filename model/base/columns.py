@@ -16,6 +16,7 @@ import numpy as np
 from coilset.model.base.entry import shortened
 from coilset.model.base.errors import InputError
 
+LONGEST_FILE = 100_000_000  # bytes
 FORMULA = re.compile(r"\s*[=+\-@].")
 DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+([eE][-+]?\d+)?\s*")
 
@@ -81,7 +82,11 @@ def read_rows(path: str | Path) -> list[tuple[int, list[str]]]:
         InputError: if it cannot be read.
     """
     try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
+        with open(path, "rb") as file:
+            data = file.read(LONGEST_FILE + 1)
+        if len(data) > LONGEST_FILE:
+            raise InputError(f"is longer than {LONGEST_FILE / 1e6:g} MB", "", path)
+        lines = data.decode("utf-8-sig").splitlines()
         lines = ["" if line.startswith("#") else line for line in lines]
         reader = csv.reader(lines, delimiter=_separator(lines), strict=True)
         return [(reader.line_num, row) for row in reader if any(map(str.strip, row))]

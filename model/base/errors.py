@@ -38,7 +38,7 @@ def reading(file: object) -> Iterator[None]:
     """Context in which whatever a reader of a file raises becomes the error for it, with the reason's first line."""
     try:
         yield
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, LookupError, TypeError, RecursionError, MemoryError) as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise InputError(f"is not readable: {reason}", "", file) from None
 

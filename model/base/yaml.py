@@ -27,7 +27,9 @@ SCALARS = (  # of the core schema of YAML 1.2.2, 10.3.2
         list("-+0123456789."),
     ),
 )
-UNFIT = re.compile("[\0\ud800-\udfff]")  # not allowed in file names, and not printable
+LONGEST_FILE = 2_000_000  # bytes; reading takes some 6 s a million
+# Not allowed in file names, or orders to a terminal: all controls but tab and the ends of lines.
+UNFIT = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f\ud800-\udfff]")
 
 
 class _Loader(yaml.loader.BaseLoader):
@@ -104,7 +106,7 @@ def _scalar(node: yaml.ScalarNode, kind: str) -> str | int | float | bool | None
 
 def _word(node: yaml.ScalarNode) -> str:
     if UNFIT.search(node.value):
-        raise _problem(node, "there is a character in this text that is none, such as NUL")
+        raise _problem(node, "there is a character in this text that is none, such as NUL or ESC")
     return node.value
 
 
@@ -146,11 +148,15 @@ def read_data(path: str | Path, kind: str = "") -> dict[str, Any]:
         raise InputError("the name of the file is empty")
     path = Path(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        with open(path, "rb") as file:
+            data = file.read(LONGEST_FILE + 1)
+        text = "" if len(data) > LONGEST_FILE else data.decode("utf-8-sig")
     except (OSError, ValueError) as error:  # a path with NUL, or a text in another encoding, is a ValueError
         reason = getattr(error, "strerror", None) or "it is not a text file in UTF-8"
         raise InputError(f"the file cannot be read: {reason}", "", path) from None
-    data = load_yaml(text, path)
-    if not isinstance(data, dict):
+    if len(data) > LONGEST_FILE:
+        raise InputError(f"is longer than {LONGEST_FILE / 1e6:g} MB; a file of entries is not", "", path)
+    entries = load_yaml(text, path)
+    if not isinstance(entries, dict):
         raise InputError(kind or "must hold entries, as in name: value", "", path)
-    return data
+    return entries

@@ -10,6 +10,7 @@ import numpy as np
 from coilset.model.base.between_steps import UNKNOWN, Between, closed_rate, part
 from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError, reading
+from coilset.model.results.files.netcdf import read_netcdf
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -155,9 +156,7 @@ def _points(path: Path) -> tuple[float | None, float | None, float | None]:
     """`Found.residual`, `ring` and `growth`; None for each without the file."""
     if not path.exists():
         return None, None, None
-    import xarray as xr
-
-    with xr.open_dataset(path, engine="h5netcdf") as data:
+    with reading(path), read_netcdf(path) as data:
         return *_residual(data), _growth(data)
 
 

@@ -55,8 +55,8 @@ def _digest(content: bytes) -> str:
 
 
 def _file_digest(path: Path) -> str:
-    """Digest of a file; that of an empty one if it cannot be read, which its case will report."""
+    """Digest of a file; nothing if it cannot be read or is none, such as a device, which its case will report."""
     try:
-        return _digest(path.read_bytes())
+        return _digest(path.read_bytes()) if path.is_file() else ""
     except OSError:
         return ""

@@ -168,7 +168,7 @@ class Plan:
                 if str(file["recipe"]) != self._recipe():
                     return None
                 keys, notices, sources = Strings(file["keys"]), file["notices"].tolist(), file["sources"].tolist()
-        except (OSError, ValueError, KeyError, BadZipFile):
+        except (OSError, ValueError, LookupError, TypeError, BadZipFile):
             return None
         fresh = Keys()
         if any(fresh(self._checked(self.rows[number]), self.spec.model) != keys[number] for number in sources):

@@ -72,9 +72,9 @@ def solid_case(
         try:
             analysis.run(report)
         except (SolveError, KeyboardInterrupt) as error:
-            failure = error
+            failure = error if isinstance(error, KeyboardInterrupt) or not interrupt.stopped() else KeyboardInterrupt()
     summary = output.summarise(analysis)
-    on_first_rank(comm, lambda: _write(folder, analysis, summary, pictures))
+    on_first_rank(comm, lambda: _write(folder, analysis, summary, pictures and not interrupt.hurries))
     _conclude(console, summary, folder)
     if failure is not None:
         raise failure

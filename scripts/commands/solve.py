@@ -141,6 +141,9 @@ def _solve(first: Analysis, runs: _Runs, drawings: Drawings | None) -> None:
         analysis = runs(first) if runs.interactive else within_accuracy(first, runs)
     except (SolveError, KeyboardInterrupt) as error:
         failure, analysis = error, runs.best
+        if runs.interrupt.stopped() and isinstance(error, SolveError):  # a step that was to be finished, and failed
+            output.say(str(error))
+            failure = KeyboardInterrupt()
     comm = analysis.comm
     runs.interrupt.over()
     analysed = time.perf_counter() - began
@@ -149,7 +152,7 @@ def _solve(first: Analysis, runs: _Runs, drawings: Drawings | None) -> None:
     output.conclude(summary, folder)
     for warning in summary["warnings"]:
         log.warning("warning: %s: %s", warning["name"], warning["message"])
-    if drawings and analysis.result.steps:  # without steps there is nothing to draw
+    if drawings and analysis.result.steps and not runs.interrupt.hurries:  # without steps there is nothing to draw
         try:
             for problem in on_first_rank(comm, lambda: drawings.draw(folder)) or ():
                 output.warn(problem)

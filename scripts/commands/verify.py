@@ -54,8 +54,8 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
             before = Path(page_file).read_text(encoding="utf-8") if Path(page_file).exists() else ""
             path.write_text(page(out, before), encoding="utf-8")
     off = [name for name, study in found.items() if not study.passed]
-    met = styled("green", "all judged numbers within tolerance")
-    console.print(styled("red", f"off: {', '.join(off)}") if off else met)
+    within = styled("green", "all judged numbers within tolerance")
+    console.print(styled("red", f"off: {', '.join(off)}") if off else within)
     return 1 if off else 0
 
 

@@ -3,6 +3,7 @@
 What is to stand out is a `styled` text: names and words of files are never read as markup.
 """
 
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -10,10 +11,19 @@ from rich import console
 from rich.table import Table
 from rich.text import Text
 
+from coilset.model.base.errors import printable
+
+ORDERS = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+
+
+def without_orders(text: str) -> str:
+    """A text that moves no cursor, sets no clipboard and turns no letters round, whatever a name from a file has."""
+    return ORDERS.sub(lambda found: printable(found[0]), text)
+
 
 def styled(style: str, text: str, rest: str = "", before: str = "") -> Text:
     """A text in one of rich's styles, such as `bold`, with the rest of its line and what is before it."""
-    return Text.assemble(before, (text, style), rest)
+    return Text.assemble(without_orders(before), (without_orders(text), style), without_orders(rest))
 
 
 def table(
@@ -49,6 +59,10 @@ class Console(console.Console):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(highlight=False, markup=False, **options)
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        """A text, of whose letters none is an order to the terminal."""
+        return super().render_str(without_orders(text), **options)
 
     def say(self, text: str, whole: bool = False) -> None:
         """A line with names of the user's, wrapped at the width of the console unless it stays whole."""

@@ -17,7 +17,7 @@ logging.getLogger("coilset").addHandler(logging.NullHandler())
 
 class _Handler(logging.FileHandler):
     def _open(self) -> TextIOWrapper:
-        return open(self.baseFilename, self.mode, encoding=self.encoding, opener=not_linked)
+        return TextIOWrapper(open(self.baseFilename, f"{self.mode}b", opener=not_linked), encoding=self.encoding)
 
     def handleError(self, record: logging.LogRecord) -> None:
         """A full disk is reported where results are written; the log merely loses lines."""

@@ -3,6 +3,7 @@
 import json
 import os
 import pwd
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -135,6 +136,32 @@ def test_each_environment_has_a_log_of_its_own(tmp_path):
         log = cache / "debian-nowhere.log"
         assert done.stderr.endswith(f"broken\ncoilset: that failed; the whole log is {log}\n")
         assert log.read_text() == "broken\n"
+
+
+def shell(script, **variables):
+    """What bash prints with the launcher's functions."""
+    sources = f"scripts={LAUNCHER.parent}; source $scripts/environment.sh; source $scripts/private_root.sh; {script}"
+    given = os.environ | {"COILSET_CACHE": "none"} | variables
+    return subprocess.run(["bash", "-c", sources], env=given, capture_output=True, text=True, check=True).stdout
+
+
+def test_wheels_are_installed_by_their_digests():
+    """As they were when they were chosen, and none that would be built."""
+    lines = (LAUNCHER.parent / "wheels.txt").read_text().splitlines()
+    assert [line.partition("==")[0] for line in lines] == ["pyarrow", "SALib", "multiprocess", "dill"]
+    for line in lines:
+        assert re.fullmatch(r"\w+==[\d.]+( --hash=sha256:[0-9a-f]{64})+", line)
+    assert "--only-binary :all: --require-hashes" in shell("echo ${wheels[@]}")
+    assert {"dill", "pyarrow", "python3-dolfinx"} <= set(shell("listed").splitlines())
+    assert "--require-hashes" in (LAUNCHER.parents[1] / ".ci" / "Containerfile").read_text()
+
+
+@pytest.mark.parametrize(("release", "seconds"), [("", 0), ("trixie", 0), ("sid", 30 * 24 * 3600)])
+def test_lists_of_packages_are_not_older_than_they_may_be(release, seconds):
+    """A week by their own date, and a month for a release in the making, whose mirrors are often old."""
+    assert int(shell("echo $least_validity", COILSET_RELEASE=release)) == seconds
+    said = shell("in_root() { echo $*; }; add_all", COILSET_RELEASE=release)
+    assert f"apt-get update -o Acquire::Check-Valid-Until=true -o Acquire::Min-ValidTime={seconds}" in said
 
 
 def test_what_a_killed_making_of_the_environment_left_mounted_is_no_obstacle(tmp_path):

@@ -12,7 +12,7 @@ from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag
 
 from coilset.model.base.entry import Strict, check_entries
-from coilset.model.base.yaml import read_data
+from coilset.model.base.yaml import LONGEST_FILE, read_data
 from coilset.model.material.creep.forms import FORMS
 from coilset.model.material.law.hardening_curves import RambergOsgood, Swift, Table, Voce
 
@@ -275,7 +275,8 @@ def read(path: str | Path) -> MaterialFile:
         InputError: if the file cannot be read or says something wrong.
     """
     try:
-        content = Path(path).read_bytes()
+        with open(path, "rb") as file:
+            content = file.read(LONGEST_FILE + 1)
     except OSError:
         content = b""  # reported below
     return _read(str(path), content)

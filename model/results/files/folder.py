@@ -121,6 +121,7 @@ def refuse_obstacles(folder: str | Path, files: Iterable[str], folders: Iterable
     names = [
         *((name, os.path.isdir, "folder") for name in files),
         *((name, os.path.isfile, "file") for name in folders),
+        *((name, os.path.islink, "link") for name in folders),
     ]
     for name, is_other, kind in names:
         if is_other(os.path.join(folder, name)):
@@ -146,7 +147,7 @@ def _complete(folder: Path) -> bool:
     """Whether a folder holds the results of a complete run."""
     try:
         return bool(json.loads((folder / "summary.json").read_text(encoding="utf-8"))["complete"])
-    except (OSError, ValueError, LookupError, TypeError):
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
         return False
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from coilset.model.base.errors import reading
+from coilset.model.results.files.netcdf import read_netcdf
 from coilset.model.results.files.opened import is_slice, open_run, table
 from coilset.model.results.records.units import unit_of
 
@@ -29,7 +30,7 @@ def labelled(folder: str | Path) -> xr.Dataset:
     """
     folder = Path(folder)
     if (folder / "sweep.nc").is_file():
-        with reading(folder / "sweep.nc"), xr.open_dataset(folder / "sweep.nc", engine="h5netcdf") as file:
+        with reading(folder / "sweep.nc"), read_netcdf(folder / "sweep.nc") as file:
             return file.load()
     if is_slice(folder):
         return _slice(folder)

@@ -1,14 +1,18 @@
 """Labelled arrays and their NetCDF file, without the libraries for reading such files, which are slow to load."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coilset.model.results.files.folder import whole
+
+if TYPE_CHECKING:  # slow to load
+    from xarray import Dataset
 
 HEADER = 1 << 20  # maximum number of bytes of a file besides its numbers
 
@@ -70,6 +74,29 @@ def reserve(path: Path, size: int) -> None:
     if hasattr(os, "posix_fallocate"):
         with open(path, "wb") as file:
             os.posix_fallocate(file.fileno(), 0, size + HEADER)
+
+
+@contextmanager
+def read_netcdf(path: str | Path) -> Iterator["Dataset"]:
+    """A NetCDF file as xarray's Dataset, whose values are read when they are used.
+
+    Raises:
+        ValueError: if it takes values from other files, as HDF5 can. OSError: if it is no such file.
+    """
+    import h5py
+    import xarray as xr
+
+    with h5py.File(path) as file:
+        for name in file:
+            if not isinstance(file.get(name, getlink=True), h5py.HardLink):
+                raise ValueError(f"{name} is a link")
+            found = file[name]
+            if not isinstance(found, h5py.Dataset):
+                raise ValueError(f"{name} is no array")
+            if found.external or found.is_virtual:
+                raise ValueError(f"{name} has its values in another file")
+    with xr.open_dataset(path, engine="h5netcdf") as data:
+        yield data
 
 
 def write_netcdf(target: str | Path, data: Mapping[str, Variable], attrs: Mapping[str, str]) -> None:

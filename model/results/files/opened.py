@@ -11,6 +11,7 @@ import xarray as xr
 
 from coilset.model.base.columns import number, read_columns
 from coilset.model.base.errors import InputError, reading
+from coilset.model.results.files.netcdf import read_netcdf
 from coilset.model.results.records.units import unit_of
 
 
@@ -79,7 +80,7 @@ def open_run(folder: str | Path) -> Run:
             raise InputError(f"{problem}{hint}", "", folder)
     with reading(folder / "summary.json"):
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    with reading(folder / "points.nc"), xr.open_dataset(folder / "points.nc", engine="h5netcdf") as file:
+    with reading(folder / "points.nc"), read_netcdf(folder / "points.nc") as file:
         data = current_names(file.load())
     for name in ("history", "seats"):
         with reading(folder / f"{name}.csv"):
