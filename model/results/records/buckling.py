@@ -90,7 +90,10 @@ def is_skipped(steps: Sequence[Step], trial: State, diameter: float) -> bool:
         return False
     if before.offset <= far < trial.offset and (not steps or _is_fast(before, trial, trial.travel, diameter)):
         return True
-    *_, path = _compressions([*states[1:], trial])
+    paths = list(_compressions([*states[1:], trial]))
+    if not paths:  # it does not get shorter, as one that is turned
+        return False
+    path = paths[-1]
     last = path[-3:]
     places = [*_ends(path), *(_forks(last, diameter) if len(last) == 3 else ())]
     return any(place.travel >= last[0].travel and _moves_aside(path, place, diameter) for place in places)
