@@ -57,14 +57,15 @@ def not_linked(path: str | Path, flags: int) -> int:
 def whole(path: str | Path) -> Iterator[Path]:
     """A temporary path, moved to `path` once it is complete; a full disk is reported in one line.
 
-    Its name cannot be foreseen: a folder that somebody sent has no link of this name.
+    What lies at that path, of a process that was killed or a link in a folder that somebody sent, is removed first.
 
     Raises:
         CoilsetError: if the file cannot be written.
     """
     path = Path(path)
-    partial = path.with_name(f".{os.urandom(8).hex()}.partial{path.suffix}")
+    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
     try:
+        partial.unlink(missing_ok=True)
         os.close(not_linked(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
         yield partial
         if (

@@ -11,9 +11,15 @@ The yield stress rises by 300 from 400 MPa (Voce); both have the same geometry, 
 are a hundredth: the ring's strains are linear. Twice as many pieces of the splines change the force by 2e-4.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
+import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
 
 from coilset.meshes.section_shapes import Outline, Oval, Tube, rectangle
+from coilset.model.base.style import STYLE
 from coilset.model.case.case import SectionSpec
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
@@ -56,6 +62,23 @@ def run(study: Study) -> None:
                 rows.append([name, mean, kind, *(100.0 * (found / reference - 1.0))])
     columns = ["wire", "D, mm", "section", "rate", "force", "set", "residual shear"]
     study.table("Deviation from the ring sector, %", columns, rows)
+    study.figure("yielding_ring", draw(rows))
+
+
+def draw(rows: Sequence[Sequence[Any]]) -> Figure:
+    """Deviations of force and set, a bar for each wire and kind of section."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(8.0, 3.6), layout="constrained")
+        wires = list(dict.fromkeys((name, mean) for name, mean, *_ in rows))
+        for axes, column, quantity in zip(figure.subplots(1, 2, sharey=True), (4, 5), ("force", "set"), strict=True):
+            for shift, kind, colour in ((-0.2, "curved", "C1"), (0.2, "warping", "C0")):
+                values = [row[column] for row in rows if row[2] == kind]
+                axes.barh([k + shift for k in range(len(wires))], values, 0.38, color=colour, label=kind)
+            axes.set_yticks(range(len(wires)), [f"{name}, D = {mean:g} mm" for name, mean in wires])
+            axes.axvline(0.0, color="k", lw=0.6)
+            axes.set(title=quantity, xlabel="deviation from the ring sector in %")
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    return figure
 
 
 def ring(mean: float, section: Section, pieces: tuple[int, int], travel: float) -> np.ndarray:
