@@ -118,3 +118,21 @@ def test_entries_are_added_where_they_lie_as_petsc_inserts_them(bent):
     matrix.fill([], share=share)
     right = dense(by_dolfinx(bent)[1], n)
     np.testing.assert_allclose(dense(matrix.mat, n), right, rtol=0.0, atol=1e-13 * np.abs(right).max())
+
+
+def test_two_kinds_of_contact_between_the_same_first_and_last_unknown_are_kept_apart(bent):
+    """As the friction of a station on both seats: only the unknowns between these differ."""
+    layout, random = LineLayout(bent), np.random.default_rng(2)
+    matrix, size, none = TangentMatrix(bent, layout), layout.size, np.empty(1)
+    parts = [
+        Contribution(np.array([[0, seat, 60]]), none, random.normal(scale=1e5, size=(1, 3, 3)), none, none, none, none)
+        for seat in (38, 44)
+    ]
+    matrix.fill(parts, share=0.5)
+    bare = TangentMatrix(bent, layout)
+    bare.fill([], share=0.5)
+    right = dense(bare.mat, size)
+    for part in parts:
+        unknowns = layout.contact_dofs[part.dofs[0]]
+        right[np.ix_(unknowns, unknowns)] += part.stiffness[0]
+    np.testing.assert_allclose(dense(matrix.mat, size), right, rtol=0.0, atol=1e-13 * np.abs(right).max())

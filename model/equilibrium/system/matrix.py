@@ -5,7 +5,7 @@ they are allocated for exactly the contacts that are closed, so that the roundin
 the history.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from petsc4py import PETSc
@@ -18,6 +18,7 @@ from coilset.model.equilibrium.system.layout import Layout, LineLayout
 from coilset.model.equilibrium.system.sums import add_matrices
 
 END = np.array([np.iinfo(np.int64).max])  # behind the numbers of contacts
+MOST = 64  # more than the unknowns of any contact element
 
 
 class TangentMatrix:
@@ -53,14 +54,14 @@ class TangentMatrix:
             self.body.tangent(self.mat)
             self.mat.assemble()
             return
-        closed = [part for part in contributions if len(part.dofs)]
+        closed = {kind: part for kind, part in enumerate(contributions) if len(part.dofs)}
         starts, begin = self._room_for(closed, exactly), 0
         assert self._sum is not None
         for cells, tangents in self.body.element_tangents(share):
             self._sum.parts[0][cells] = tangents
         stiffness = self._sum.values[len(self._sum.values) - self._starts[-1] :]
         stiffness[:] = 0.0
-        for part in closed:
+        for part in closed.values():
             add_matrices(part.stiffness, starts[begin : begin + len(part.dofs)], stiffness)
             begin += len(part.dofs)
         self._sum.assemble()
@@ -76,12 +77,12 @@ class TangentMatrix:
         else:
             self.mat.zeroRows(rows, diag=self.body.constraint_weight)
 
-    def _room_for(self, closed: Sequence[Contribution], exactly: bool) -> np.ndarray:
+    def _room_for(self, closed: Mapping[int, Contribution], exactly: bool) -> np.ndarray:
         """Where the stiffness of each contact element begins; collective.
 
         The entries are allocated anew unless there is room for all of them; with `exactly`, for no others.
         """
-        numbers = np.concatenate([END[:0], *(self._numbers(part.dofs) for part in closed)])
+        numbers = np.concatenate([END[:0], *(self._numbers(kind, part.dofs) for kind, part in closed.items())])
         found = self._known.searchsorted(numbers)
         fits = self._sum is not None and bool((self._known[found] == numbers).all())
         if exactly:
@@ -93,12 +94,12 @@ class TangentMatrix:
             found = self._known.searchsorted(numbers)
         return self._starts[found]
 
-    def _numbers(self, dofs: np.ndarray) -> np.ndarray:
-        """Of contact elements, shape (m, k) → (m,): k, the first and the last dof identify the bodies in contact."""
+    def _numbers(self, kind: int, dofs: np.ndarray) -> np.ndarray:
+        """Of contact elements, shape (m, k) → (m,): in a kind of contact, first and last dof identify the bodies."""
         size = self.layout.size
-        return (dofs.shape[1] * size + dofs[:, 0]) * size + dofs[:, -1]
+        return ((kind * MOST + dofs.shape[1]) * size + dofs[:, 0]) * size + dofs[:, -1]
 
-    def _allocate(self, closed: Sequence[Contribution]) -> None:
+    def _allocate(self, closed: Mapping[int, Contribution]) -> None:
         """Allocate the entries of the elements, of the extra unknowns' diagonal and of contacts; collective."""
         layout, local = self.layout, self.body.element_dofs
         assert local is not None
@@ -106,15 +107,14 @@ class TangentMatrix:
         extra = np.arange(layout.start + layout.owned, layout.stop)[:, None]
         tables = [(elements, elements), (extra, extra)]
         known, starts = [END[:0]], [np.zeros(1, np.int64)]
-        for size in sorted({part.dofs.shape[1] for part in closed}):
+        for kind, part in closed.items():
             assert isinstance(layout, LineLayout)
-            dofs = np.concatenate([part.dofs for part in closed if part.dofs.shape[1] == size])
-            numbers, once = np.unique(self._numbers(dofs), return_index=True)  # several may join the same bodies
-            unknowns = layout.contact_dofs[dofs[once]]
+            numbers, once = np.unique(self._numbers(kind, part.dofs), return_index=True)  # several may join the same
+            unknowns = layout.contact_dofs[part.dofs[once]]
             here = (unknowns >= layout.start) & (unknowns < layout.stop)
             tables.append((np.where(here, unknowns, -1), unknowns))  # other ranks add their rows of it themselves
             known.append(numbers)
-            starts.append(starts[-1][-1] + size**2 * np.arange(1, len(numbers) + 1))
+            starts.append(starts[-1][-1] + unknowns.shape[1] ** 2 * np.arange(1, len(numbers) + 1))
         self._known, self._starts = np.concatenate([*known, END]), np.concatenate(starts)
         self._sum = None  # so that its memory is free
         self._sum = SumOfMatrices(self.mat, tables)
