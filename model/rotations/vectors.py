@@ -65,6 +65,33 @@ def rotated(v: np.ndarray, θ: np.ndarray) -> np.ndarray:
     return np.asarray(v + c[1] * across + c[2] * np.cross(θ, across))
 
 
+def carried(v: np.ndarray, ψ: np.ndarray, of: float, gap: float, to: float) -> np.ndarray:
+    """Displacements over one interval, per its length, as they are over a later one if their rates turn with ψ.
+
+    A rate u̇ that turns has moved a point by ∫ exp([tψ]) u̇ dt: along ψ as it is, across it in the direction half way,
+    and less than without turning by the factor sin x/x, x = ½ |ψ| times the interval's length. So a point that turns
+    about an axis is carried on along its circle.
+
+    Args:
+        v: displacements per length, shape (m, 3).
+        ψ: rotations per length, shape (m, 3), rad.
+        of: length of their interval; 0: they are rates at a moment.
+        gap: from its end to the start of the later one.
+        to: length of the later one.
+    """
+    turned, half = rotated(v, (0.5 * of + gap + 0.5 * to) * ψ), 0.5 * np.linalg.norm(ψ, axis=1, keepdims=True)
+    axis = ψ / np.where(half > 0.0, 2.0 * half, 1.0)
+    along = np.sum(turned * axis, axis=1, keepdims=True) * axis
+    # of more than half a turn, which no step should have, the factor comes near to 0 / 0
+    kept = np.where(half * max(of, to) < 0.5 * np.pi, _sinc(half * to) / _sinc(np.minimum(half * of, 0.5 * np.pi)), 1.0)
+    return np.asarray(along + kept * (turned - along))
+
+
+def _sinc(x: np.ndarray) -> np.ndarray:
+    """sin x/x."""
+    return np.asarray(np.sinc(x / np.pi))
+
+
 def nearest_vector(R: np.ndarray, near: np.ndarray) -> np.ndarray:
     """The rotation vector of a matrix that is nearest to another vector, of any number of turns, shape (3,), rad."""
     v = np.empty(3)

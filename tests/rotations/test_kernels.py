@@ -6,7 +6,7 @@ from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
 from coilset.model.rotations import kernels
-from coilset.model.rotations.vectors import cross_matrix, nearest_vector, rotation_matrix
+from coilset.model.rotations.vectors import carried, cross_matrix, nearest_vector, rotation_matrix
 
 ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 9.9e-4, 1.1e-3, 0.3, 2.0, 2.69, 2.7, 3.1]
 ANGLES += [np.pi - part for part in (1e-6, 1e-9, 1e-12)]
@@ -82,3 +82,18 @@ def test_nodes_are_rotated_by_their_vectors():
     for node in range(4):
         kernels.chart_tangent(v[node], expected)
         np.testing.assert_array_equal(T[node], expected)
+
+
+@pytest.mark.parametrize(("of", "gap", "to"), [(1.0, 0.0, 1.0), (0.0, 0.0, 1.0), (1.0, 0.0, 3.0), (0.4, 1.0, 0.7)])
+def test_points_that_turn_about_an_axis_are_carried_on_along_their_helices(of, gap, to):
+    """To rounding; `of` 0: from their velocities."""
+    rng = np.random.default_rng(2)
+    ψ, x = np.array([0.3, -0.5, 0.4]), rng.normal(size=(6, 3))
+    n = ψ / np.linalg.norm(ψ)
+
+    def at(t):
+        return x @ rotation_matrix(t * ψ).T + 0.7 * t * n
+
+    before = (at(of) - at(0.0)) / of if of else np.cross(ψ, x) + 0.7 * n
+    found = carried(before, np.tile(ψ, (6, 1)), of, gap, to)
+    np.testing.assert_allclose(found, (at(of + gap + to) - at(of + gap)) / to, rtol=0, atol=1e-14)

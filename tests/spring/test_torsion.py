@@ -240,3 +240,18 @@ def test_coils_that_are_wound_onto_each_other_rub():
     assert back == pytest.approx(there, rel=1e-6)
     assert more - there == pytest.approx(there - less, rel=0.05)
     assert more - there > 0.01 * there
+
+
+def test_closed_coils_are_turned_in_few_iterations():
+    """Coils that touch have no room for the strain of a start along tangents, at which wire yields: for the first step
+    it took 475 evaluations in place of 14, and 20 coils were given up."""
+    arms = {"bottom": {"length": 1.0}, "top": {"length": 1.0}}
+    spring = {"wire_diameter": 6.35, "mean_diameter": 57.15, "turns": 6, "pitch": 6.35, "arms": arms}
+    loading = [{"to": {"force": 0, "top": {"turn": 15.0}}, "steps": 2}]
+    mesh = {"elements_per_turn": 8, "section": {"radial": 2, "angular": 8}}
+    case = data({}, spring=spring, material={"wire": "ASTM A229"}, mesh=mesh, contact={"arbor": 25.4})
+    analysis = Analysis(check(case | {"loading": loading}), MPI.COMM_SELF)
+    summary = summarise(analysis.setup, analysis.run())
+    assert summary["evaluations"] < 60
+    expected = en13906.turn_rate(analysis.law.E, 6.35, 57.15, 6.0)
+    assert summary["turn_rate_Nmm_per_deg"] == pytest.approx(expected, rel=0.01)

@@ -18,6 +18,7 @@ from coilset.model.equilibrium.newton.iteration import Iteration
 from coilset.model.equilibrium.newton.methods import Method
 from coilset.model.equilibrium.newton.outcome import Outcome
 from coilset.model.equilibrium.settings import NewtonControl
+from coilset.model.equilibrium.system.factors import lu
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.system import System
 
@@ -123,6 +124,28 @@ class Newton:
         change.axpy(-1.0, F)
         iteration.snes.getKSP().solve(change, rate)
         return rate if math.isfinite(rate.norm()) else None
+
+    def first_rate(self, load: Load) -> PETSc.Vec | None:
+        """Derivative of the increments by the load factor at the start of a step; collective.
+
+        None where the law finds no stress there, or the tangent is singular.
+        """
+        system, iteration, layout = self.system, self.iteration, self.system.layout
+        X, F, rate = (layout.vector() for _vector in range(3))
+        system.reset_contacts()
+        if not system.evaluate(X):
+            return None
+        iteration.begin(load, False)
+        system.tangent(X, load, iteration.matrix, at_step_start=True)
+        system.residual(X, load, 1.0, F)
+        factors = lu(iteration.matrix.mat, iteration.matrix.ordering)
+        factors.setUp()
+        failed = factors.getFailedReason()
+        if not failed:
+            factors.apply(F, rate)
+            rate.scale(-1.0)
+        factors.destroy()
+        return None if failed or not math.isfinite(rate.norm()) else rate
 
     def _in_vain(self, depths: Sequence[float]) -> bool:
         """Whether to stop augmenting, from the penetrations before each augmentation, the last one's included.

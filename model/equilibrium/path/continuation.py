@@ -298,8 +298,10 @@ class Continuation:
         return self._judged(self._newton(load, start))
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
-        """The guess of the last steps; then the last equilibrium."""
+        """The guess of the last steps, of the first one of a rotation that by its rate; then the last equilibrium."""
         guess = self.guess.of(load, self.steps.position, size)
+        if guess is None and self.guess.carried and (rate := self.newton.first_rate(load)) is not None:
+            guess = self.guess.from_rate(rate, load)
         if guess is not None:
             yield Start(guess)
         yield Start()

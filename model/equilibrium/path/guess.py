@@ -15,6 +15,8 @@ from coilset.model.equilibrium.system.system import System
 
 BEND = 0.05  # share of a step by the last rate that the change of rates may add to it; with more the path has a kink
 
+FARTHEST = 0.5 * np.pi  # by which rates at its start may turn a section in a step: they are of no use for more
+
 
 class Guess:
     """Guesses of a step's increments.
@@ -81,10 +83,10 @@ class Guess:
             return None
         if self._rates is not None and max_of_ranks(load.layout.comm, float(self._rates.equilibrium.any())):
             return self._with_rate(self._rates.equilibrium, load, size / last)
-        guess = self._rate(self._last.equilibrium, load, 0.5 * (size + last) / last)
+        guess = self._rate(self._last.equilibrium, load, 1.0, 0.0, size / last)
         guess.scale(size / last)
         if earlier:
-            difference = self._rate(self._before.equilibrium, load, 0.5 * (size + 2.0 * last + earlier) / last)
+            difference = self._rate(self._before.equilibrium, load, earlier / last, 1.0, size / last)
             difference.scale(-size / earlier)
             difference.axpy(1.0, guess)
             difference.scale((size + last) / (earlier + last))
@@ -95,8 +97,8 @@ class Guess:
 
     def _with_rate(self, rates: np.ndarray, load: Load, ratio: float) -> PETSc.Vec:
         """The parabola with the rate at its last point; `ratio` of the step's size to that of the last one."""
-        guess = self._rate(rates, load, 0.5 * ratio)
-        bent = self._rate(self._last.equilibrium, load, 0.5 * (ratio + 1.0))
+        guess = self._rate(rates, load, 0.0, 0.0, ratio)
+        bent = self._rate(self._last.equilibrium, load, 1.0, 0.0, ratio)
         bent.aypx(-1.0, guess)
         bent.scale(ratio)
         kink = bent.norm() - BEND * guess.norm()
@@ -105,15 +107,31 @@ class Guess:
         guess.scale(ratio)
         return guess
 
-    def _rate(self, increments: np.ndarray, load: Load, further: float) -> PETSc.Vec:
-        """A step's increments, those of free unknowns turned as its sections do in `further` last steps."""
-        values = increments.copy()
-        if self.carried:
-            layout = self.system.layout
-            assert isinstance(layout, LineLayout)
-            layout.turn(values, further * self._last.equilibrium)
-            values[load.held] = increments[load.held]
-        return self.system.layout.vector(values)
+    def from_rate(self, rates: PETSc.Vec, load: Load) -> PETSc.Vec | None:
+        """A step from the last equilibrium by the rates there, which turn with the sections as they do in it.
+
+        None if something turns by more than `FARTHEST`, as in a release in one step; collective.
+        """
+        layout, values = self.system.layout, rates.getArray(readonly=True)
+        assert isinstance(layout, LineLayout)
+        if max_of_ranks(layout.comm, layout.greatest_rotation(values)) > FARTHEST:
+            return None
+        return self._on(values, values, load, 0.0, 0.0, 1.0)
+
+    def _rate(self, increments: np.ndarray, load: Load, of: float, gap: float, to: float) -> PETSc.Vec:
+        """A step's increments, those of free unknowns carried on with the last step's rotations, as by `carry`."""
+        if not self.carried:
+            return self.system.layout.vector(increments.copy())
+        return self._on(increments, self._last.equilibrium, load, of, gap, to)
+
+    def _on(
+        self, increments: np.ndarray, rotations: np.ndarray, load: Load, of: float, gap: float, to: float
+    ) -> PETSc.Vec:
+        layout, values = self.system.layout, increments.copy()
+        assert isinstance(layout, LineLayout)
+        layout.carry(values, rotations, of, gap, to)
+        values[load.held] = increments[load.held]
+        return layout.vector(values)
 
     def _out_of_balance(self, load: Load, start: PETSc.Vec) -> float:
         forces = start.duplicate()

@@ -10,7 +10,7 @@ from petsc4py import PETSc
 
 from coilset.model.body.state import Field, Where
 from coilset.model.contact.base import SEAT_DOFS
-from coilset.model.rotations.vectors import rotated
+from coilset.model.rotations.vectors import carried, rotated
 
 if TYPE_CHECKING:
     from coilset.model.rod.rod import Rod
@@ -141,12 +141,22 @@ class LineLayout(Layout):
         natural[: 6 * n].reshape(n, 6)[:, :3] = range(3)
         return self.from_order(natural).astype(int)
 
-    def turn(self, values: np.ndarray, rotations: np.ndarray) -> None:
-        """Turn each station's displacement and rotation in `values` by its rotation in `rotations`, parts here."""
+    def greatest_rotation(self, values: np.ndarray) -> float:
+        """The greatest of the stations' rotations in `values`, parts here, rad."""
+        turns = self.rod.numbering.rotations
+        own = turns[(turns < self.owned).all(axis=1)]
+        return float(np.linalg.norm(values[own], axis=1).max(initial=0.0))
+
+    def carry(self, values: np.ndarray, rotations: np.ndarray, of: float, gap: float, to: float) -> None:
+        """Carry each station's displacement and rotation in `values` on with its rotation in `rotations`, parts here.
+
+        Lengths of intervals are as of `carried`, in those over which the rotations are.
+        """
         moves, turns = self.rod.numbering.u, self.rod.numbering.rotations
         own = (np.hstack([moves, turns]) < self.owned).all(axis=1)
-        for dofs in (moves[own], turns[own]):
-            values[dofs] = rotated(values[dofs], rotations[turns[own]])
+        ψ = rotations[turns[own]]
+        values[moves[own]] = carried(values[moves[own]], ψ, of, gap, to)
+        values[turns[own]] = rotated(values[turns[own]], (0.5 * of + gap + 0.5 * to) * ψ)
 
     @property
     def _all_dofs(self) -> np.ndarray:
