@@ -1,7 +1,7 @@
 """Graceful early ends of a run: Ctrl-C, a batch system's SIGTERM, and a reader that closes our output.
 
 During a solve the step in progress is finished, then the run ends; a second Ctrl-C ends it at once. SIGTERM, after
-which a batch system leaves some 30 s, ends the step, too: what was found before it is kept.
+which a batch system leaves some 30 s, leaves the step on one rank: what was found before it is kept.
 """
 
 import io

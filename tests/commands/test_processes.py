@@ -112,7 +112,7 @@ def coilset(*arguments):
     [(1, signal.SIGTERM), (1, signal.SIGINT), (2, signal.SIGKILL)],
 )
 def test_ending_the_outer_process_ends_all(start, example, ranks, number):
-    """SIGTERM and SIGINT gently: with results and exit code 130."""
+    """With results and exit code 130, but for SIGKILL: after SIGINT the step is finished, after SIGTERM it is left."""
     command = coilset("-n", ranks, "solve", example, "--out", "out", *LONG)
     running = start(command, **PRIVATE)
     running.wait_for("\n    3 ")
@@ -123,7 +123,7 @@ def test_ending_the_outer_process_ends_all(start, example, ranks, number):
         running.until(lambda: not running.alive())
     else:
         assert running.alive() == {}
-        judge_gentle_end(running)
+        judge_gentle_end(running, number)
 
 
 def complaints_of(running):
@@ -132,10 +132,10 @@ def complaints_of(running):
     return [line for line in lines if not line.startswith("coilset: compil")]
 
 
-def judge_gentle_end(running):
+def judge_gentle_end(running, number):
     said, complaints = running.said.read_text(), complaints_of(running)
     assert running.process.returncode == 130, (said, complaints)
-    assert "ing this step" in said  # finishing or leaving
+    assert ("leaving" if number == signal.SIGTERM else "finishing") + " this step" in said
     assert "--resume" in said
     assert complaints == ["coilset: interrupted"]
     summary = json.loads((running.folder / "out" / "summary.json").read_text())
@@ -156,13 +156,13 @@ def test_tests_end_with_the_command_that_runs_them(start, tmp_path, number):
     running.until(lambda: not running.alive())
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_stopped_in_an_environment_without_a_root(start, example, ranks):
+@pytest.mark.parametrize(("ranks", "number"), [(1, signal.SIGINT), (1, signal.SIGTERM), (2, signal.SIGINT)])
+def test_stopped_in_an_environment_without_a_root(start, example, ranks, number):
     running = start(coilset("-n", ranks, "solve", example, "--out", "out", *LONG))
     running.wait_for("\n    3 ")
-    os.kill(running.process.pid, signal.SIGINT)
+    os.kill(running.process.pid, number)
     running.process.wait(PATIENCE)
-    judge_gentle_end(running)
+    judge_gentle_end(running, number)
 
 
 @pytest.mark.parametrize(("ranks", "seconds"), [(1, 0.05), (1, 0.5), (2, 0.2), (2, 1.0)])

@@ -3,8 +3,10 @@
 import contextlib
 import csv
 import errno
+import fcntl
 import json
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -54,25 +56,45 @@ def not_linked(path: str | Path, flags: int) -> int:
 
 
 @contextlib.contextmanager
+def _sharing(path: Path) -> Iterator[None]:
+    """Share the lock of the folder with all who write files in it, so that none removes a file of another.
+
+    Partial files of `path` are removed first, if nobody writes in the folder: then all of them are of killed processes.
+    """
+    unfinished = re.compile(rf"\.{re.escape(path.stem)}\.[0-9a-f]{{16}}\.partial{re.escape(path.suffix)}")
+    folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        with contextlib.suppress(OSError):  # others write in it, or the file system has no locks
+            fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            for name in filter(unfinished.fullmatch, os.listdir(folder)):
+                os.unlink(name, dir_fd=folder)
+        with contextlib.suppress(OSError):
+            fcntl.flock(folder, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        yield
+    finally:
+        os.close(folder)
+
+
+@contextlib.contextmanager
 def whole(path: str | Path) -> Iterator[Path]:
     """A temporary path, moved to `path` once it is complete; a full disk is reported in one line.
 
-    What lies at that path, of a process that was killed or a link in a folder that somebody sent, is removed first.
+    Its name cannot be foreseen: a folder that somebody sent has no link of this name, and two processes that write
+    the same file do not meet. What killed processes have left of this file is removed.
 
     Raises:
         CoilsetError: if the file cannot be written.
     """
     path = Path(path)
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    partial = path.with_name(f".{path.stem}.{os.urandom(8).hex()}.partial{path.suffix}")
     try:
-        partial.unlink(missing_ok=True)
-        os.close(not_linked(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
-        yield partial
-        if (
-            not partial.exists() or not partial.stat().st_size
-        ):  # VTK reports nothing, and removes what it did not finish
-            raise OSError(errno.EIO, "nothing of it was written; is the disk full?")
-        os.replace(partial, path)
+        with _sharing(path):
+            os.close(not_linked(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
+            yield partial
+            if not partial.exists() or not partial.stat().st_size:
+                # VTK reports nothing, and removes what it did not finish
+                raise OSError(errno.EIO, "nothing of it was written; is the disk full?")
+            os.replace(partial, path)
     except OSError as error:
         raise CoilsetError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
