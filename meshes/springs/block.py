@@ -24,6 +24,7 @@ from coilset.meshes.springs.ends import touching_pitch
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 
 MERIDIANS = 64
+TOUCH = 0.01  # tolerance over the wire diameter: tables and the pitch of closed ends make touching inexact
 
 
 class Coil(Protocol):

@@ -1,4 +1,4 @@
-"""What rules a spring out: a wire too thick for its coils, overlapping coils, no travel."""
+"""What rules a spring out: a wire too thick for its coils, overlapping coils."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from coilset.meshes.springs.block import TOUCH
 from coilset.meshes.springs.ends import touching_pitch
 from coilset.model.base.errors import InputError
 
@@ -13,7 +14,6 @@ if TYPE_CHECKING:
     from coilset.meshes.springs.geometry import Spring
 
 INDEX_LEAST = 3.0
-TOUCH = 0.01  # tolerance over the wire diameter: tables and the pitch of closed ends make touching inexact
 
 
 @dataclass(frozen=True)
@@ -24,22 +24,21 @@ class Fault:
     text: str
 
 
-def faults(spring: "Spring", wound_solid: bool = False) -> Iterator[Fault]:
-    """The reasons why a spring is impossible, one after the other; `wound_solid`: coils may touch from the start."""
-    for check in (_index, _coils, *(() if wound_solid else (_block,))):
+def faults(spring: "Spring") -> Iterator[Fault]:
+    """The reasons why a spring is impossible, one after the other; its coils may touch, as wound onto each other."""
+    for check in (_index, _coils):
         yield from check(spring)
 
 
-def refuse(spring: "Spring", place: str | None = None, file: str = "", wound_solid: bool = False) -> "Spring":
+def refuse(spring: "Spring", place: str | None = None, file: str = "") -> "Spring":
     """Raise `InputError` for the first fault; return the spring if there is none.
 
     Args:
         spring: `Spring`.
         place: reported instead of the fault's own, for a spring not defined by drawing entries.
         file: the file that the spring came from.
-        wound_solid: whether it is pulled or turned, so that its coils may touch from the start.
     """
-    for fault in faults(spring, wound_solid):
+    for fault in faults(spring):
         raise InputError(fault.text, fault.place if place is None else place, file)
     return spring
 
@@ -87,15 +86,4 @@ def _coils(spring: "Spring") -> Iterator[Fault]:
             "spring",
             f"coils overlap: between the turns {turn[i]:.3g} and {turn[i] + 1:.3g} the "
             f"centres of the wire are {distance[i]:.3g} mm apart, must be at least {wire[i]:.3g} mm",
-        )
-
-
-def _block(spring: "Spring") -> Iterator[Fault]:
-    travel = spring.free_length - spring.block_height
-    if travel <= TOUCH * np.max(spring.wire_diameter(spring.breaks)):
-        yield Fault(
-            "spring",
-            f"there is no travel: the free length is {spring.free_length:.4g} mm, the block "
-            f"length {spring.block_height:.4g} mm; wind it longer, or give the initial_tension of an extension spring, "
-            "or arms",
         )

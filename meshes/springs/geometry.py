@@ -9,7 +9,7 @@ import numpy as np
 from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.axis import Axis
-from coilset.meshes.springs.block import block_height
+from coilset.meshes.springs.block import TOUCH, block_height
 from coilset.meshes.springs.ends import OPEN, EndCoils
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.stations import ElementsPerTurn, stations
@@ -306,6 +306,12 @@ class Spring:
     def block_height(self) -> float:
         """Distance between the seats at which the spring is solid, mm; see `coilset.meshes.springs.block`."""
         return block_height(self)
+
+    @cached_property
+    def wound_solid(self) -> bool:
+        """Whether its coils lie on each other before any load, so that it is pulled or turned, not pressed."""
+        play = self.body_length - self.block_height
+        return bool(play <= TOUCH * np.max(self.wire_diameter(self.breaks)))
 
     @property
     def active_turns(self) -> float:

@@ -181,7 +181,7 @@ class SpringSpec(Strict):
             return Spring(radius, height, wire, hand, *ends, section=section, axis=axis)
 
         if self.initial_tension is not None:
-            return self._refuse(spring(wire), wound_solid=True)
+            return self._refuse(spring(wire))
         if self.pitch is None:
             return self._refuse(self._with_free_length(spring, self.turns - ends_and_transitions))
         built = spring(self._function("pitch"))
@@ -193,11 +193,10 @@ class SpringSpec(Strict):
             )
         return self._refuse(built)
 
-    def _refuse(self, spring: Spring, wound_solid: bool = False) -> Spring:
-        """Reject impossible springs; faults of the diameter are reported at the entry that gives it. Coils of a torsion
-        spring may touch."""
+    def _refuse(self, spring: Spring) -> Spring:
+        """Reject impossible springs; faults of the diameter are reported at the entry that gives it."""
         try:
-            return self._with_tails(refuse(spring, wound_solid=wound_solid or self.arms is not None))
+            return self._with_tails(refuse(spring))
         except InputError as error:
             place = error.place.replace("mean_diameter", self.diameter_entry)
             raise InputError(error.problem, place, error.file) from None

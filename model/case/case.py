@@ -296,6 +296,13 @@ Part = Annotated[Below1, BeforeValidator(_fraction, json_schema_input_type=Below
 """A part of one, above 0 and below, as a number or in per cent."""
 
 
+Loading = Annotated[
+    list[AnyPhase],
+    Field(strict=False, min_length=1, description="the load program: targets and waiting times, in order"),
+]
+"""A load program."""
+
+
 class Case(Strict):
     """A case; units mm, N, MPa, K."""
 
@@ -344,10 +351,7 @@ class Case(Strict):
             "force, such as 0.2 %; none: errors are not estimated, and all phases give their steps"
         ),
     ] = 0.002
-    loading: Annotated[
-        list[AnyPhase],
-        Field(strict=False, min_length=1, description="the load program: targets and waiting times, in order"),
-    ]
+    loading: Loading
     rates_at: Annotated[
         list[Annotated[float, Unit("mm"), Field(gt=0)]],
         Field(
@@ -547,6 +551,12 @@ class Case(Strict):
         return [name for name in PAST if getattr(self.spring, name) is not None]
 
 
+class UnloadedCase(Case):
+    """A case whose load program may be left out, for what does not load its spring, or has a program of its own."""
+
+    loading: Loading = Field(default_factory=list)
+
+
 def check(data: Any, file: str | Path = "") -> Case:
     """The checked Case of raw data; paths in it count from the folder of `file`.
 
@@ -565,12 +575,13 @@ def read_case_data(path: str | Path) -> dict[str, Any]:
     return read_data(path, "a case file holds entries such as spring:, material: and loading:")
 
 
-def read_case(path: str | Path, settings: Iterable[str] = ()) -> Case:
+def read_case(path: str | Path, settings: Iterable[str] = (), kind: type[Case] = Case) -> Case:
     """Read and check a case file.
 
     Args:
         path: the YAML file.
         settings: texts `key=value` that replace entries of the file; paths in them count from the working directory.
+        kind: `UnloadedCase` if it need not have a load program.
 
     Returns:
         Case.
@@ -581,4 +592,4 @@ def read_case(path: str | Path, settings: Iterable[str] = ()) -> Case:
     data = read_case_data(path)
     for setting in settings:
         assign(data, setting)
-    return check(data, path)
+    return check_entries(data, kind, path)

@@ -20,18 +20,35 @@ def pulls(case: Case, spring: Spring) -> bool:
 
 
 def is_pressed(case: Case, spring: Spring) -> bool:
-    """Whether it is a compression spring: without hooks or arms, and neither pulled nor turned by its load program."""
-    return not (spring.has_tails or pulls(case, spring) or rotations(case, spring))
+    """Whether it is a compression spring: with travel and without hooks or arms, and neither pulled nor turned by its
+    load program."""
+    return not (spring.has_tails or spring.wound_solid or pulls(case, spring) or is_turned(case, spring))
+
+
+def is_turned(case: Case, spring: Spring) -> bool:
+    """Whether a load program turns the spring, by a rotation or a torque, and neither presses nor pulls it."""
+    return bool(rotations(case, spring) or torques(case, spring))
 
 
 def rotations(case: Case, spring: Spring) -> tuple[float, ...]:
     """Rotations that a load program goes to, degrees, positive in the winding direction; none of one with a travel."""
+    return _about_axis(case, spring, "turn")
+
+
+def torques(case: Case, spring: Spring) -> tuple[float, ...]:
+    """Torques that it goes to, N mm, likewise."""
+    return _about_axis(case, spring, "torque")
+
+
+def _about_axis(case: Case, spring: Spring, name: str) -> tuple[float, ...]:
+    """Targets of the heads about the axis, by the name of the entry."""
     if any(abs(load) > AT_REST * spring.free_length for load in _loads(case, spring)):
         return ()
     found: list[float] = []
     for phase in case.loading:
         for end, target in heads_of(phase).items():
-            if isinstance(target.turn, float) and target.turn:
-                turn = spring.hand * target.turn * (1.0 if end == "top" else -1.0)
-                found += [] if turn in found else [turn]
+            value = getattr(target, name)
+            if isinstance(value, float) and value:
+                value *= spring.hand * (1.0 if end == "top" else -1.0)
+                found += [] if value in found else [value]
     return tuple(found)

@@ -18,9 +18,10 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
     """Refuse targets that no spring can reach, with G of its material in MPa.
 
     Raises:
-        InputError: with the numbers: seats that would have to pull, hooks that would press, a height below block, or a
-            force far above the one at which all coils are in contact.
+        InputError: with the numbers: seats that would have to pull, hooks that would press, a spring without travel
+            that would be pressed, a height below block, or a force far above the one at which all coils are in contact.
     """
+    check_travel(case, spring)
     lowest = lowest_height(case, spring)
     greatest = BORNE * closing_force(spring, shear_modulus)
     for number, phase in enumerate(case.loading):
@@ -37,6 +38,27 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
                     f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
                     f"{place}.force",
                 )
+
+
+def check_travel(case: Case, spring: Spring) -> None:
+    """Refuse a load program that presses a spring whose coils lie on each other; see `check_pressed`."""
+    if any(_presses(phase, spring) for phase in case.targets):
+        check_pressed(spring)
+
+
+def check_pressed(spring: Spring) -> None:
+    """Refuse to press a spring whose coils lie on each other.
+
+    Raises:
+        InputError: with its lengths.
+    """
+    if spring.wound_solid and not spring.has_tails:
+        raise InputError(
+            f"there is no travel: the free length is {spring.free_length:.4g} mm, the block length "
+            f"{spring.block_height:.4g} mm; wind it longer, or pull or turn it, as in "
+            "{to: {force: 0, top: {turn: 90}}}",
+            "spring",
+        )
 
 
 def check_working(case: Case, spring: Spring, shear_modulus: float) -> None:
@@ -140,6 +162,12 @@ def closing_force(spring: Spring, shear_modulus: float) -> float:
     t = np.linspace(0.0, spring.turns, 16 * int(np.ceil(min(spring.turns, 1000.0))) + 1)
     d, play = spring.wire_diameter(t), spring.pitch(t) - touching_pitch(spring.wire_diameter(t), spring.slope(t))
     return float((shear_modulus * d**4 * np.maximum(play, 0.0) / (64.0 * spring.mean_radius(t) ** 3)).max())
+
+
+def _presses(phase: Phase, spring: Spring) -> bool:
+    """Whether a phase goes to block, or compresses a spring that has no travel."""
+    kind, value = phase.goal(spring.free_length, spring.block_height)
+    return phase.to == "block" or (value > 0.0 if kind == "force" else value < (1.0 - SLACK) * spring.free_length)
 
 
 def _only_press(target: Target, free_length: float, place: str) -> None:

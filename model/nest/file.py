@@ -10,7 +10,7 @@ from pydantic import Discriminator, Field, Tag
 from coilset.model.base.entry import Strict, Whole, check_entries
 from coilset.model.base.errors import InputError
 from coilset.model.base.yaml import read_data
-from coilset.model.case import Case, read_case
+from coilset.model.case import Case, UnloadedCase, read_case
 
 KIND = "a nest holds the entries outer:, inner: and loading:"
 NAMES = ("outer", "inner")
@@ -19,7 +19,7 @@ NAMES = ("outer", "inner")
 class Member(Strict):
     """One of the two springs."""
 
-    case: Annotated[str, Field(description="its case file, from the nest file's folder; its own loading is not used")]
+    case: Annotated[str, Field(description="its case file, from the nest file's folder; a loading in it is not used")]
 
 
 class Height(Strict):
@@ -82,7 +82,7 @@ def read_nest(path: str | Path) -> Nest:
     data = check_entries(read_data(path, KIND), NestFile, path)
     cases, files = [], [path.parent / getattr(data, name).case for name in NAMES]
     for file in files:
-        case = read_case(file)
+        case = read_case(file, kind=UnloadedCase)
         if case.ends != "seats":
             raise InputError("a nest is compressed between seats; give ends: seats", "ends", file)
         if case.seats.bottom.moves or case.seats.top.moves:

@@ -18,6 +18,7 @@ from coilset.model.base.errors import InputError, SolveError, naming
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase, Target
+from coilset.model.case.targets import check_pressed
 from coilset.model.nest.file import NAMES, Nest
 from coilset.model.nest.plan import Plan, plan
 from coilset.model.results.records.record import Errors, Result, Setup, Step
@@ -138,7 +139,9 @@ def press(nest: Nest, report: Callable[[str, Step], object] = lambda name, step:
 
 def _build(case: Case, file: Path) -> Spring:
     with naming(file):
-        return case.spring.build()
+        spring = case.spring.build()
+        check_pressed(spring)
+        return spring
 
 
 def _run(nest: Nest, number: int, program: list[Phase], report: Callable[[str, Step], object], threads: int) -> Member:

@@ -12,6 +12,7 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
+from coilset.model.case.targets import check_travel
 from coilset.model.results.records.releases import FREE
 from coilset.model.run.stages import stage_of
 from coilset.model.slice.contact import SelfContact
@@ -139,6 +140,7 @@ class SliceAnalysis:
     def _check_targets(self) -> None:
         """Reject what needs heads or a flow of heat, and heights below that at which the coils touch."""
         block = self.spring.block_height
+        check_travel(self.case, self.spring)
         if self.case.heat is not None:
             raise InputError("no heat flows along a slice; leave it out, or use coilset solve", "heat")
         for index, phase in enumerate(self.case.loading):

@@ -12,7 +12,7 @@ from coilset.meshes.springs.manufacture import Relief
 from coilset.model.base.columns import Columns, read_columns
 from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case
-from coilset.model.case.targets import lowest_height
+from coilset.model.case.targets import check_pressed, lowest_height
 
 WANTED = "travel and force, or height and force, or height and free_length"
 BACK = 0.02  # of the maximum travel: a return by less is scatter
@@ -81,7 +81,9 @@ def read_pressing(path: str | Path, case: Case) -> Pressing:
         InputError: if the file cannot be read, a column or number is missing or wrong, or it shows no press.
     """
     table = read_columns(path)
-    length = case.spring.build().free_length
+    spring = case.spring.build()
+    check_pressed(spring)
+    length = spring.free_length
     if "free_length" in table.names:
         return _of_lengths(table, case, length)
     way = next((name for name in ("travel", "height") if name in table.names), None)

@@ -7,7 +7,8 @@ from math import inf
 from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.case import Case
-from coilset.model.case.loading import pulls, rotations
+from coilset.model.case.loading import is_turned, pulls, rotations, torques
+from coilset.model.case.targets import check_travel
 from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
@@ -41,6 +42,7 @@ def case_sheet(
         InputError: a spring that is not cylindrical, an unknown wire, a length that the spring cannot have, or a
             temperature outside the material's table.
     """
+    check_travel(case, spring)
     law, cylinder, pulled = case_law(case, spring), Cylinder.of(spring), pulls(case, spring)
     named = wire_name or getattr(case.material, "wire", None)
     known = wire(named) if named else None
@@ -51,7 +53,7 @@ def case_sheet(
             between = f"between the block length {low:.4g} and the free length {high:.4g} mm"
             between = f"above the free length {low:.4g} mm, as the spring is pulled" if pulled else between
             raise InputError(f"{length:g} mm is no working length; must be {between}", "--length")
-    E, G, turns_to = elastic.young_modulus, elastic.shear_modulus, rotations(case, spring)
+    E, G = elastic.young_modulus, elastic.shear_modulus
     made = Sheet(
         cylinder,
         elastic,
@@ -66,13 +68,14 @@ def case_sheet(
         yield_stress=law.first_yield(case.temperature),
         strength=law.data.tensile_strength if isinstance(case.material, str) else None,
         pulled=pulled,
-        turns_to=turns_to,
+        turns_to=rotations(case, spring),
         tension=getattr(case.spring, "initial_tension", None) or 0.0,
-        beyond=tails_compliance(spring, E, G, bool(turns_to)),
+        beyond=tails_compliance(spring, E, G, is_turned(case, spring)),
         hook_stress=hook_stress(spring) if pulled else 0.0,
         on_point=OnPoint.of(spring, E, G),
         seating=seating_of(case),
     )
+    made = replace(made, turns_to=(*made.turns_to, *(torque / made.turn_rate for torque in torques(case, spring))))
     if lengths:
         return made
     if case.working:

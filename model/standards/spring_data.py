@@ -15,12 +15,15 @@ Row = tuple[str, str, str]
 """Label, text and unit."""
 
 
-def spring_data(spring: Spring, material: Elastic = STEEL) -> Iterator[Row]:
-    """The data of a spring, for a table; where they change along it, from the least to the greatest."""
+def spring_data(spring: Spring, material: Elastic = STEEL, turned: bool = False) -> Iterator[Row]:
+    """The data of a spring, for a table; where they change along it, from the least to the greatest.
+
+    Args:
+        turned: whether it is known to be turned, as any spring with arms is.
+    """
     t = spring.breaks
     d, D, mass = spring.wire_diameter(t), 2 * spring.mean_radius(t), spring.volume * material.density
-    # with hooks or arms, or wound solid: not pressed between seats
-    is_pulled = spring.has_tails or spring.body_length < spring.block_height * (1.0 + SAME)
+    is_pulled = spring.has_tails or spring.wound_solid  # not pressed between seats
     yield "turns", f"{spring.turns:g}", ""
     yield "active turns", f"{spring.active_turns:g}", ""
     yield "hand", "right" if spring.hand > 0 else "left", ""
@@ -43,7 +46,7 @@ def spring_data(spring: Spring, material: Elastic = STEEL) -> Iterator[Row]:
         yield "slenderness L0/D", f"{spring.free_length / D.min():.3g}", ""
         buckles = (f"{travel:.4g}", "mm") if np.isfinite(travel) else ("never", "")
         yield "travel to buckling, parallel seats", *buckles
-    yield _rate(spring, material, is_pulled)
+    yield _rate(spring, material, is_pulled, turned)
     if (axis := spring.measured_axis) is not None:
         yield "offset of the measured axis from z", f"{axis.offset:.3f}", "mm"
         yield "tilt of the measured axis", f"{axis.tilt:.3f}", "degrees"
@@ -54,16 +57,18 @@ def _span(values: np.ndarray) -> str:
     return f"{low:.4g}" if high - low < 5e-4 * high else f"{low:.4g} to {high:.4g}"
 
 
-def _rate(spring: Spring, material: Elastic, is_pulled: bool) -> Row:
-    """Of a spring with arms E I over the length of its wire, else by the torsion of the wire."""
+def _rate(spring: Spring, material: Elastic, is_pulled: bool, turned: bool) -> Row:
+    """Of a spring that is turned E I over the length of its wire, else by the torsion of the wire."""
     t = spring.breaks
     d, D = spring.wire_diameter(t), 2 * spring.mean_radius(t)
-    if any(tail is not None and not tail.pulled for tail in spring.tails):
+    arms = any(tail is not None and not tail.pulled for tail in spring.tails)
+    if turned or arms:
         second = np.pi * d.min() ** 4 / 64.0
         if spring.section is not None:
             second = WireNumbers.of(spring.section, float(d.min()), float(D.mean())).in_plane
         rate = np.radians(material.young_modulus * second / spring.wire_length)
-        return "rate E I/l, EN 13906-3 with the arms' wire", f"{rate:.5g}", "N mm/°"
+        label = "rate E I/l, EN 13906-3" + " with the arms' wire" * arms
+        return label, f"{rate:.5g}", "N mm/°"
     is_cylinder = all(np.ptp(values) < SAME * values.max() for values in (d, D))  # to which EN 13906-1 applies
     if spring.section is not None and is_cylinder:
         of_rate = WireNumbers.of(spring.section, float(d.mean()), float(D.mean())).of_rate

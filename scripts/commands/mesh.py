@@ -8,8 +8,8 @@ from mpi4py import MPI
 
 from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import CoilsetError, InputError, naming
-from coilset.model.case import read_case
-from coilset.model.case.loading import is_pressed
+from coilset.model.case import UnloadedCase, read_case
+from coilset.model.case.loading import is_pressed, is_turned
 from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
 from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.spring_data import spring_data
@@ -36,7 +36,7 @@ def mesh(
     if MPI.COMM_WORLD.rank:
         return  # too little work to be worth distributing
     console = Console()
-    case = read_case(case_file, settings)
+    case = read_case(case_file, settings, UnloadedCase)
     if write:
         from coilset.meshes.export import check_format, write_mesh
 
@@ -46,11 +46,12 @@ def mesh(
     folder = results_folder(out, Path(case_file).stem)
     with naming(case_file):
         spring = case.spring.build()
+        turned = is_turned(case, spring)
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         elastic = case_elastic(case, case_law(case, spring))
         spring = spring if height is None else spring.at_height(height)
     refuse_to_replace([folder / name for name in DRAWN if pictures] + [Path(path) for path in write], force)
-    rows = ((label, f"{value} {unit}".strip()) for label, value, unit in spring_data(spring, elastic))
+    rows = ((label, f"{value} {unit}".strip()) for label, value, unit in spring_data(spring, elastic, turned))
     console.pairs([*rows, ("elements", str(len(turns) - 1))])
     for warning in spring_warnings(spring, elastic, is_pressed(case, spring), seating_of(case)):
         console.warn(warning.message)

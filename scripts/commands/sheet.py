@@ -13,7 +13,7 @@ from rich.text import Text
 from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError, naming
 from coilset.model.base.warning import Warning
-from coilset.model.case import Case, read_case
+from coilset.model.case import Case, UnloadedCase, read_case
 from coilset.model.case.loading import is_pressed
 from coilset.model.figures.panels.goodman import goodman as diagram_of
 from coilset.model.figures.png import write_png
@@ -72,7 +72,7 @@ def sheet(case_file: str | Path | None, options: Options) -> None:
         raise InputError(f"'{surface}' is no surface; give {' or '.join(get_args(Surface))}", "--surface")
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
-    case = read_case(case_file, options.settings)
+    case = read_case(case_file, options.settings, UnloadedCase)
     files = [Path(one) for one in options.out if Path(one).suffix.lower() in SHEETS]
     folders = [one for one in options.out if Path(one) not in files]
     folder = results_folder(folders[-1] if folders else None, Path(case_file).stem)
@@ -141,6 +141,8 @@ def _pressed(spring: Spring, height: float, files: Sequence[Path]) -> Spring:
 def _other_program(run: from_results.Found, case: Case) -> list[str]:
     """Entries of the load program that a run had otherwise than the case; into how many steps it is divided is none."""
     then, now = run.summary.get("origin", {}).get("case", {}).get("loading"), case.model_dump(mode="json")["loading"]
+    if not now:
+        return []
     old, new = ([{k: phase[k] for k in phase if k != "steps"} for phase in one] for one in (then or now, now))
     return list(_differences(old, new, "loading"))
 

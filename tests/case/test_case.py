@@ -6,7 +6,7 @@ import pytest
 
 from coilset.model.base.entry import LONGEST, shown
 from coilset.model.base.errors import InputError
-from coilset.model.case import Case, check, read_case
+from coilset.model.case import Case, UnloadedCase, check, read_case
 from coilset.model.case.settings import assign
 from coilset.model.equilibrium.settings import CONSTANTS
 
@@ -16,6 +16,16 @@ TEXT = "spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.
 
 def raw(**entries):
     return {"spring": SPRING, "loading": [{"to": "block"}], **entries}
+
+
+def test_a_run_needs_a_load_program_and_a_drawing_does_not(tmp_path):
+    path = tmp_path / "case.yaml"
+    path.write_text(TEXT.partition("loading")[0], encoding="utf-8")
+    with pytest.raises(InputError, match=r"^.*case\.yaml: loading: this entry is required; give the load program: .*$"):
+        read_case(path)
+    assert read_case(path, kind=UnloadedCase).loading == []
+    with pytest.raises(InputError, match=r"loading: .*must have at least 1 item"):
+        read_case(path, ["loading=[]"], UnloadedCase)
 
 
 def problem(data):

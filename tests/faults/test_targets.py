@@ -5,7 +5,10 @@ import pytest
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
+from coilset.model.case.loading import is_pressed
 from coilset.model.case.targets import check_targets, closing_force
+from coilset.model.slice.analysis import SliceAnalysis
+from coilset.model.standards.case_sheet import case_sheet
 from coilset.scripts.commands.solve import solve
 
 G = 84000.0
@@ -49,6 +52,45 @@ def test_nothing_is_pressed_beyond_its_block(example, tmp_path, target, words, e
         solve(example, tmp_path / "out", False, settings)
     assert f"loading.1.to.{words}" in str(caught.value)
     assert not (tmp_path / "out").exists()
+
+
+SOLID = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 5.0}
+LIES = (
+    "spring: there is no travel: the free length is 35 mm, the block length 35 mm; wind it longer, or pull or turn it, "
+    "as in {to: {force: 0, top: {turn: 90}}}"
+)
+
+
+@pytest.mark.parametrize("to", ["block", {"force": 10.0}, {"travel": 0.1}, {"height": 34.9}])
+@pytest.mark.parametrize("ends", ["seats", "clamped"])
+def test_coils_that_lie_on_each_other_are_not_pressed(to, ends):
+    case = check({"spring": SOLID, "ends": ends, "loading": [{"to": to}]})
+    spring = case.spring.build()
+    for refuses in (lambda: check_targets(case, spring, G), lambda: case_sheet(case, spring, None)):
+        with pytest.raises(InputError) as caught:
+            refuses()
+        assert str(caught.value) == LIES
+    if ends == "clamped":
+        with pytest.raises(InputError, match="there is no travel"):
+            SliceAnalysis(case)
+
+
+@pytest.mark.parametrize(
+    "to",
+    [
+        {"force": -10.0},
+        {"height": 40.0},
+        {"force": 0.0, "top": {"turn": 90.0}},
+        {"force": 0.0, "top": {"torque": 90.0}},
+        {"travel": 0.0, "top": {"turn": -90.0}},
+        {"top": {"turn": 90.0}},
+    ],
+)
+def test_coils_that_lie_on_each_other_are_pulled_and_turned(to):
+    case = check({"spring": SOLID, "ends": "clamped", "loading": [{"to": to}]})
+    spring = case.spring.build()
+    check_targets(case, spring, G)
+    assert not is_pressed(case, spring)
 
 
 @pytest.mark.parametrize("target", ["travel: 17.5", "height: 17.5", "force: 1400"])

@@ -39,6 +39,22 @@ def test_data_of_the_cylinder(capsys):
     assert rows["elements"] == "50"
 
 
+@pytest.mark.parametrize(
+    ("loading", "rate"),
+    [("", "13906-2, of the body"), ("loading: [{to: {force: 0, top: {turn: 90}}}]", "rate E I/l, EN 13906-3 ")],
+)
+def test_closed_coils_have_their_data_with_a_load_program_or_without(tmp_path, capsys, loading, rate):
+    """They were refused for their travel, and without a program for that."""
+    case = tmp_path / "door.yaml"
+    spring = "spring: {wire_diameter: 6.35, inner_diameter: 50.8, turns: 20, pitch: 6.35}"
+    case.write_text(f"{spring}\nmaterial: {{wire: ASTM A229}}\nends: clamped\n{loading}\n", encoding="utf-8")
+    mesh(case, pictures=False)
+    printed = capsys.readouterr().out
+    assert rate in printed
+    assert "length of the body" in printed
+    assert "travel to block" not in printed
+
+
 def test_files_and_pictures(tmp_path, capsys):
     out, file = tmp_path / "out", tmp_path / "new" / "spring.vtu"
     mesh(SPRINGS / "closed_and_ground.yaml", out=out, write=[str(file)])

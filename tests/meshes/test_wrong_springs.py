@@ -114,11 +114,6 @@ WRONG = [
     # √(4.5² + (5/6)²) = 4.58
     ({"mean_diameter": CONE, "pitch": 4.5}, OVERLAP.format("0 and 1", "4.58")),
     (
-        {"pitch": 5.0},
-        "spring: there is no travel: the free length is 35 mm, the block length 35 mm; wind it longer, or give the "
-        "initial_tension of an extension spring, or arms",
-    ),
-    (
         {"free_length": 80.0},
         "spring.free_length: 80 mm contradicts the pitch, which makes 77 mm; leave one of the two out",
     ),

@@ -35,6 +35,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 def write(folder, outer=None, inner=None, loading=LOADING, **common):
     for name, spring in (("outer", OUTER | (outer or {})), ("inner", INNER | (inner or {}))):
         case = COMMON | common | {"spring": spring}
+        del case["loading"]  # a nest has its own
         (folder / f"{name}.yaml").write_text(yaml.safe_dump(case), encoding="utf-8")
     members = {name: {"case": f"{name}.yaml"} for name in ("outer", "inner")}
     (folder / "nest.yaml").write_text(yaml.safe_dump(members | {"loading": loading}), encoding="utf-8")

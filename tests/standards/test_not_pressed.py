@@ -64,6 +64,16 @@ def made(entries, lengths=()):
     return case_sheet(case, case.spring.build(), None, lengths=lengths)
 
 
+def test_a_torque_is_a_rotation_by_the_rate():
+    """The sheet of a spring that a torque turns was that of a compression spring."""
+    turned = made(TURNED)
+    loading = [{"to": {"force": 0.0, "top": {"torque": 100.0 * turned.turn_rate}}}]
+    sheet = made(TURNED | {"loading": loading})
+    assert sheet.turns_to == pytest.approx((100.0,))
+    assert sheet.beyond == turned.beyond > 0.0
+    assert "13906-3" in sections(sheet)[1][0]
+
+
 def warned(entries):
     case = check(entries)
     spring = case.spring.build()

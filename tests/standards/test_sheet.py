@@ -287,6 +287,16 @@ def test_another_load_program_is_named_before_the_rows(case, tmp_path, capsys):
     assert "loading.3 was not given, is {to: {force: 0}} in the case" in shorter
 
 
+def test_a_case_without_a_load_program_has_a_sheet(case, tmp_path, capsys):
+    """And is compared with a run of its spring, whatever that went through."""
+    run = run_of(tmp_path / "run", case)
+    case.write_text(CASE.partition("loading")[0], encoding="utf-8")
+    sheet(case, Options(run, lengths=[52.0], pictures=False))
+    printed = capsys.readouterr().out
+    assert "force at 52 mm" in printed
+    assert "another load program" not in printed
+
+
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
     sheet(case, Options(out=[tmp_path / "out"]))
     assert "the allowed share of Rm depends on the wire; give --wire" in capsys.readouterr().out

@@ -18,7 +18,7 @@ def read(paths: Sequence[str], points: bool) -> "tuple[Readings, ...]":
     Raises:
         InputError: a file is wrong.
     """
-    from coilset.model.case import read_case
+    from coilset.model.case import UnloadedCase, read_case
     from coilset.model.material.identification.relaxation_tests import read_relaxation
     from coilset.model.standards import en13906
     from coilset.model.uniform_coil.equivalent import coil
@@ -27,7 +27,7 @@ def read(paths: Sequence[str], points: bool) -> "tuple[Readings, ...]":
     for path, case in with_cases(paths):
         per_force = None
         if case is not None:
-            d, D, _, _ = coil(read_case(case).spring.build())
+            d, D, _, _ = coil(read_case(case, kind=UnloadedCase).spring.build())
             per_force = float(en13906.stress(1.0, d, D))
         found.append(read_relaxation(path, points, per_force))
     return tuple(found)

@@ -97,14 +97,14 @@ def known_values(texts: list[str]) -> dict[str, float]:
 
 def _read(paths: list[str]) -> "list[Pressing]":
     """The presses of the files, each with the case that follows it."""
-    from coilset.model.case import read_case
+    from coilset.model.case import UnloadedCase, read_case
     from coilset.model.spring_fit.pressing import read_pressing
 
     found = []
     for path, case in with_cases(paths):
         if case is None:
             raise InputError("no case file of its spring follows; give press.csv spring.yaml", FLAG, path)
-        found.append(read_pressing(path, read_case(case)))
+        found.append(read_pressing(path, read_case(case, kind=UnloadedCase)))
     return found
 
 
