@@ -348,8 +348,7 @@ def sweep(
         from coilset.scripts.commands.sweep import sweep as run_sweep
 
         kept = force, resume, retry, collect
-        name = engine.value if engine else None
-        options = Options(*kept, share, *limits, name, scheduler, jobs, ranks_per_case, pictures)
+        options = Options(*kept, share, *limits, scheduler, ranks_per_case, pictures)
         run_sweep(sweep_file, out, workers, options)
 
 
@@ -361,6 +360,8 @@ def _check_engine(engine: Engine | None, scheduler: str | None) -> None:
         raise InputError(f"is {engine.value}, but {ranks} ranks are running; leave one of both out", "--engine")
     if scheduler is not None and engine != Engine.dask:
         raise InputError("belongs to --engine dask", "--scheduler")
+    if engine == Engine.dask and scheduler is None:
+        raise InputError("give that of a running cluster; on one machine, --engine processes", "--scheduler")
 
 
 def _check_sweep(sweep_file: str) -> None:

@@ -47,9 +47,7 @@ class Options:
     shard: Shard = WHOLE
     until: float = inf  # seconds from the start of the command
     budget: float = inf  # seconds of all cases together
-    engine: str | None = None
     scheduler: str | None = None
-    jobs: int = 1
     ranks_per_case: int = 1
     pictures: bool = True
 
@@ -113,10 +111,10 @@ def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> P
 
 @contextmanager
 def _pool(comm: "MPI.Comm", workers: Workers, options: Options, out: Path) -> Iterator[Pool | None]:
-    if options.engine == "dask":
+    if options.scheduler is not None:
         from coilset.model.sweep.engines.dask import dask_pool
 
-        with dask_pool(options.scheduler, options.jobs) as pool:
+        with dask_pool(options.scheduler) as pool:
             yield pool
     elif comm.size > 1:
         from coilset.model.sweep.engines.mpi import mpi_pool

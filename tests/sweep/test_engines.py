@@ -2,9 +2,6 @@
 
 import os
 import socket
-import ssl
-from contextlib import suppress
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +15,7 @@ from coilset.model.sweep.journal import Journal, Records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.run import Limits, finished, missing, run
 from coilset.model.sweep.shards import WHOLE, Shard, duration
+from coilset.scripts.main import app
 
 UNIFORM = """
     model: uniform_rod
@@ -141,74 +139,36 @@ def test_a_large_sweep_is_shown_by_some_of_its_cases(plan, tmp_path, solve):
 
 
 def test_dask_finds_what_processes_find(plan, tmp_path, solve):
-    pytest.importorskip("distributed")
+    distributed = pytest.importorskip("distributed")
     solve(plan, tmp_path / "processes")
-    with dask_pool(None, 2) as pool:
-        assert pool.workers == 2
-        solve(plan, tmp_path / "dask", pool=pool)
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        client.wait_for_workers(2, timeout=60)
+        with dask_pool(cluster.scheduler_address) as pool:
+            assert pool.workers == 2
+            solve(plan, tmp_path / "dask", pool=pool)
     assert summaries(plan, tmp_path / "dask") == summaries(plan, tmp_path / "processes")
 
 
-def listening(processes):
-    """Addresses of the ports on which processes of this machine listen, without IPv6's."""
-    sockets = set()
-    for process in processes:
-        for number in Path(f"/proc/{process}/fd").iterdir():
-            with suppress(OSError):
-                sockets.add(os.readlink(number).removeprefix("socket:[").removesuffix("]"))
-    rows = [row.split() for row in Path("/proc/net/tcp").read_text().splitlines()[1:]]
-    return [row[1] for row in rows if row[3] == "0A" and row[9] in sockets]
-
-
-def family():
-    """This process and all that it has started, directly or not."""
-    parents = {}
-    for status in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError):
-            parents[int(status.parent.name)] = int(status.read_text().rpartition(")")[2].split()[1])
-    found = {os.getpid()}
-    while more := {one for one, parent in parents.items() if parent in found} - found:
-        found |= more
-    return found
-
-
-def answer(port, encrypted):
-    """What a process without the key gets; nothing if the connection is refused."""
-    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
-    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
-    with (
-        suppress(OSError),
-        socket.create_connection(("127.0.0.1", port), timeout=20.0) as plain,
-        context.wrap_socket(plain) if encrypted else plain as connection,
-    ):
-        connection.sendall(b"GET /status HTTP/1.0\r\n\r\n")
-        return connection.recv(1000)
-    return b""
-
-
-def test_a_scheduler_of_our_own_serves_nobody_else():
-    """Its ports, and those of its workers, are of this machine alone, and want the key; pages it has none."""
-    pytest.importorskip("distributed")
-    alert, no_page = b"\x15\x03", b"HTTP/1.1 404"
-    with dask_pool(None, 1):
-        places = [place.split(":") for place in listening(family())]
-        assert {address for address, _ in places} == {"0100007F"}
-        for port in (int(number, 16) for _, number in places):
-            assert answer(port, encrypted=True) == b""
-            assert answer(port, encrypted=False).startswith((alert, no_page)) or not answer(port, encrypted=False)
-
-
-def test_without_openssl_dask_is_refused_in_one_line(monkeypatch):
-    pytest.importorskip("distributed")
-    monkeypatch.setenv("PATH", "/nowhere")
-    with pytest.raises(InputError, match="needs the program openssl"), dask_pool(None, 1):
-        pass
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (["--engine", "dask"], "--scheduler: give"),
+        (["--scheduler", "tls://a:1"], "--engine dask"),
+        (["--engine", "mpi"], "ranks"),
+    ],
+)
+def test_engines_and_schedulers_belong_together(options, reason):
+    with pytest.raises(InputError, match=reason):
+        app(["sweep", "sweep.yaml", *options], prog_name="coilset", standalone_mode=False)
 
 
 def test_a_scheduler_that_does_not_answer_is_named(monkeypatch):
     pytest.importorskip("distributed")
     monkeypatch.setattr("coilset.model.sweep.engines.dask.CONNECT_SECONDS", 1)
-    with pytest.raises(InputError, match="no scheduler answers"), dask_pool("tcp://127.0.0.1:9", 1):
+    with pytest.raises(InputError, match="no scheduler answers"), dask_pool("tcp://127.0.0.1:9"):
         pass
 
 
