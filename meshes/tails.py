@@ -15,13 +15,14 @@ They are pulled at the innermost point of the loop, its top. Arms are held at th
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal, NamedTuple, Self
 
 import numpy as np
 from annotated_types import Unit
 from pydantic import Field, model_validator
 
+from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.base.strict_entries import Strict
 
@@ -60,7 +61,24 @@ class Hook(Strict):
         return self
 
 
-class Hooks(Strict):
+class _Tails(Strict):
+    """The wire beyond both ends of a coil, with the entries `bottom` and `top`."""
+
+    def on(self, spring: Spring, place: str) -> Spring:
+        """A spring with this wire at its ends; `place` of this entry.
+
+        Raises:
+            InputError: as `tail`.
+        """
+        tails = []
+        for end, turn, side in (("bottom", 0.0, -1.0), ("top", spring.turns, 1.0)):
+            one = getattr(self, end)
+            at = spring.centre_line(turn), side * spring.tangent(turn), np.array([0.0, 0.0, side])
+            tails.append(None if one is None else tail(one, *at, float(spring.wire_diameter(turn)), f"{place}.{end}"))
+        return replace(spring, tails=(tails[0], tails[1]))
+
+
+class Hooks(_Tails):
     """Hooks of an extension spring."""
 
     bottom: Annotated[Hook | None, Field(description="the bottom hook; left out: the wire's tip is clamped")] = None
@@ -110,7 +128,7 @@ class Arm(Strict):
         return self
 
 
-class Arms(Strict):
+class Arms(_Tails):
     """Arms of a torsion spring."""
 
     bottom: Annotated[Arm | None, Field(description="the bottom arm; left out: the wire ends at the coil")] = None

@@ -14,11 +14,10 @@ greater of two:
   neighbours, come to rest on each other.
 """
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.ends import touching_pitch
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
@@ -31,8 +30,8 @@ class Coil(Protocol):
     """The properties of a spring that determine where it is solid; see `coilset.meshes.springs.geometry.Spring`."""
 
     @property
-    def section(self) -> Boundary | None:
-        """Of wire that is not round."""
+    def section(self) -> Any:
+        """Boundary of wire that is not round; None of round wire."""
 
     @property
     def turns(self) -> float:

@@ -7,7 +7,6 @@ import numpy as np
 from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.model.base.strict_entries import Strict
@@ -103,7 +102,7 @@ def bottom_and_top(ends: EndCoils | BothEnds) -> tuple[EndCoils, EndCoils]:
     return (ends.bottom, ends.top) if isinstance(ends, BothEnds) else (ends, ends)
 
 
-def touching_pitch(diameter: np.ndarray, slope: np.ndarray, section: Boundary | None = None) -> np.ndarray:
+def touching_pitch(diameter: np.ndarray, slope: np.ndarray, section: Any = None) -> np.ndarray:
     """Pitch at which a coil touches its neighbour: of round wire the centres are a diameter apart, d² = p² + r′².
 
     0 for coils whose radius changes by more than the wire's width per turn: they pass each other.
@@ -111,7 +110,7 @@ def touching_pitch(diameter: np.ndarray, slope: np.ndarray, section: Boundary | 
     Args:
         diameter: wire diameter, or height of a wire that is not round, mm.
         slope: change of the mean radius, mm per turn.
-        section: of a wire that is not round.
+        section: Boundary of a wire that is not round; None of a round one.
     """
     if section is not None:
         return 0.5 * diameter * section.touching(2.0 * slope / diameter)

@@ -3,17 +3,15 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
-from coilset.meshes.springs.axis import Axis
 from coilset.meshes.springs.block import TOUCH, block_height
 from coilset.meshes.springs.ends import OPEN, EndCoils
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.stations import ElementsPerTurn, stations
-from coilset.meshes.tails import Tail
 from coilset.model.base.errors import InputError
 
 INTERVALS_PER_TURN = 64
@@ -40,8 +38,8 @@ class Spring:
         bottom: `EndCoils` at turn 0.
         top: `EndCoils` at the last turn.
         phase: polar angle of the first point, rad.
-        measured_axis: fitted axis of a measured spring in the coordinates of its file; None of a drawn one.
-        section: boundary of a wire that is not round, in half its height, y towards the coil's axis and z upwards;
+        measured_axis: fitted Axis of a measured spring in the coordinates of its file; None of a drawn one.
+        section: Boundary of a wire that is not round, in half its height, y towards the coil's axis and z upwards;
             None of a round one.
         axis: offsets x and y of the coil's centre over the turn, or None.
         tails: the wire below turn 0 and above the last turn, a `Tail` or None each.
@@ -54,10 +52,10 @@ class Spring:
     bottom: EndCoils = OPEN
     top: EndCoils = OPEN
     phase: float = 0.0
-    measured_axis: Axis | None = None
-    section: Boundary | None = None
+    measured_axis: Any = None
+    section: Any = None
     axis: tuple[PiecewisePolynomial, PiecewisePolynomial] | None = None
-    tails: tuple[Tail | None, Tail | None] = (None, None)
+    tails: tuple[Any, Any] = (None, None)
 
     @property
     def turns(self) -> float:

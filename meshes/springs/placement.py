@@ -52,6 +52,11 @@ class Placement(NamedTuple):
     torsion: np.ndarray
     flat: np.ndarray
 
+    @property
+    def is_cut(self) -> bool:
+        """Whether the plane of a ground end crosses a section of round wire."""
+        return bool((self.flat[..., 0] < 1.0).any())
+
     def part(self, elements: slice | np.ndarray) -> "Placement":
         """Of some of the elements, or of all in another order; of neighbours in their order it is a view."""
         if not isinstance(elements, slice) and len(elements):

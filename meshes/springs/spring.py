@@ -1,7 +1,6 @@
 """The `spring:` section of the case file, and the geometry built from it."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -9,24 +8,20 @@ from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
-from coilset.meshes.boundary import Boundary
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.checks import refuse
 from coilset.meshes.springs.ends import OPEN, Ends, bottom_and_top, pitch_with_ends, touching_pitch
 from coilset.meshes.springs.geometry import Spring
-from coilset.meshes.springs.manufacture import Peening, Relief
-from coilset.meshes.springs.measured import MeasuredSpec
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.shapes import CurvedAxis, DiameterProfile, Length, Profile, profile_function
-from coilset.meshes.springs.wire_section import WireSpec
-from coilset.meshes.tails import Arms, Hooks, tail
 from coilset.model.base.errors import InputError
+from coilset.model.base.package import Entry
 from coilset.model.base.strict_entries import Strict
 
 PAST = "made_by", "peening", "initial_tension"  # entries that leave stress in the wire before its first load
 DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wire diameters to add for the mean one
 
-__all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
+__all__ = ["Spring", "SpringEntry", "SpringSpec"]
 
 
 class SpringSpec(Strict):
@@ -39,7 +34,11 @@ class SpringSpec(Strict):
             "section is scaled"
         ),
     ] = None
-    wire: Annotated[WireSpec | None, Field(description="section of a wire that is not round")] = None
+    wire: Annotated[
+        Any,
+        Entry("coilset.meshes.springs.wire_section:WireSpec"),
+        Field(description="section of a wire that is not round"),
+    ] = None
     mean_diameter: Annotated[
         DiameterProfile | None, Field(description="mean coil diameter D, mm; a number, a table or a shape")
     ] = None
@@ -75,7 +74,9 @@ class SpringSpec(Strict):
         ),
     ] = None
     relieved: Annotated[
-        Relief | None, Field(description="stress relief of the coiled wire, before peening and before the first load")
+        Any,
+        Entry("coilset.meshes.springs.manufacture:Relief"),
+        Field(description="stress relief of the coiled wire, before peening and before the first load"),
     ] = None
     initial_tension: Annotated[
         float | None,
@@ -87,13 +88,19 @@ class SpringSpec(Strict):
         ),
     ] = None
     peening: Annotated[
-        Peening | None, Field(description="shot peening of the wire, before the first load; left out: none")
+        Any,
+        Entry("coilset.meshes.springs.manufacture:Peening"),
+        Field(description="shot peening of the wire, before the first load; left out: none"),
     ] = None
     hooks: Annotated[
-        Hooks | None, Field(description="hooks of an extension spring, by which it is pulled; left out: none")
+        Any,
+        Entry("coilset.meshes.tails:Hooks"),
+        Field(description="hooks of an extension spring, by which it is pulled; left out: none"),
     ] = None
     arms: Annotated[
-        Arms | None, Field(description="arms of a torsion spring, at whose ends it is held and turned; left out: none")
+        Any,
+        Entry("coilset.meshes.tails:Arms"),
+        Field(description="arms of a torsion spring, at whose ends it is held and turned; left out: none"),
     ] = None
 
     @model_validator(mode="after")
@@ -195,26 +202,15 @@ class SpringSpec(Strict):
 
     def _refuse(self, spring: Spring) -> Spring:
         """Reject impossible springs; faults of the diameter are reported at the entry that gives it."""
+        tails = self.hooks or self.arms
         try:
-            return self._with_tails(refuse(spring))
+            refuse(spring)
+            return spring if tails is None else tails.on(spring, "spring.hooks" if self.hooks else "spring.arms")
         except InputError as error:
             place = error.place.replace("mean_diameter", self.diameter_entry)
             raise InputError(error.problem, place, error.file) from None
 
-    def _with_tails(self, spring: Spring) -> Spring:
-        """The spring with its hooks or arms."""
-        entry = self.hooks or self.arms
-        if entry is None:
-            return spring
-        name, tails = "hooks" if self.hooks else "arms", []
-        for end, turn, side in (("bottom", 0.0, -1.0), ("top", spring.turns, 1.0)):
-            one = getattr(entry, end)
-            at = spring.centre_line(turn), side * spring.tangent(turn), np.array([0.0, 0.0, side])
-            diameter, place = float(spring.wire_diameter(turn)), f"spring.{name}.{end}"
-            tails.append(None if one is None else tail(one, *at, diameter, place))
-        return replace(spring, tails=(tails[0], tails[1]))
-
-    def _wire(self) -> tuple[Boundary | None, PiecewisePolynomial]:
+    def _wire(self) -> tuple[Any, PiecewisePolynomial]:
         """The section of a wire that is not round, and the height or diameter of any wire over the turns, mm."""
         if self.wire is None:
             return None, self._function("wire_diameter")
@@ -247,7 +243,7 @@ class SpringSpec(Strict):
         pitch: PiecewisePolynomial,
         wire: PiecewisePolynomial,
         radius: PiecewisePolynomial,
-        section: Boundary | None,
+        section: Any,
     ) -> PiecewisePolynomial:
         slope = radius.derivative()
 
@@ -280,11 +276,13 @@ class SpringSpec(Strict):
 
 
 def _origin(value: Any) -> str:
-    measured = isinstance(value, MeasuredSpec) or (isinstance(value, dict) and "file" in value)
+    measured = "file" in value if isinstance(value, dict) else hasattr(value, "file")
     return "(measured)" if measured else "(drawn)"
 
 
 SpringEntry = Annotated[
-    Annotated[SpringSpec, Tag("(drawn)")] | Annotated[MeasuredSpec, Tag("(measured)")], Discriminator(_origin)
+    Annotated[SpringSpec, Tag("(drawn)")]
+    | Annotated[Any, Entry("coilset.meshes.springs.measured:MeasuredSpec"), Tag("(measured)")],
+    Discriminator(_origin),
 ]
 """The `spring:` section of the case file; a spring with the entry `file` is a measured one."""

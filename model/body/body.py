@@ -22,8 +22,8 @@ class Moment(NamedTuple):
 class Body(ABC):
     """A structure whose unknowns are the increments since the last equilibrium.
 
-    What not every body has comes with a default: no rotations, no predicted forces, no dependence on time, and an
-    unknown error. A body with `element_dofs` gives its tangent by elements, any other one assembles it itself.
+    What not every body has comes with a default: no rotations, no predicted forces and no dependence on time. A body
+    with `element_dofs` gives its tangent by elements, any other one assembles it itself.
 
     Attributes:
         increment: the increments, mm and rad, a function of the body's space; ghosts are up to date for `update`.
@@ -136,40 +136,6 @@ class Body(ABC):
             share: of the predicted correction, after which the trial state is.
         """
         raise NotImplementedError
-
-    # ---- error due to the step size --------------------------------------------------------------------------------
-
-    def estimate_errors(self) -> None:
-        """Prepare for estimates from now on; may add fields to the state, so call it before anything is saved."""
-
-    def error_works(
-        self, ratio: float, kinked: bool, final: bool, rate: np.ndarray | None = None
-    ) -> tuple[float, float, float, float]:
-        """Works of the errors of the internal forces; call it once at the end of a step, before the commit.
-
-        Args:
-            ratio: size of the step over that of the previous one on the same path, 0 if there is none.
-            kinked: whether the path of strains has a kink within the step.
-            final: whether the step is committed in any case; else the next `restore` of the state may discard it.
-            rate: of the local unknowns at the end of the step, times its size; None if it is not known.
-
-        Returns:
-            Four works: of the error of the internal forces on the step's deformation; of the share of the error that
-            this step added, on the step's deformation and on that of the very first step; of the whole error on the
-            latter. For this rank's cells, N mm; not a number if the error is unknown.
-        """
-        return np.nan, np.nan, np.nan, np.nan
-
-    def resolves_time(self, fall: float) -> bool:
-        """Whether the error of a trial step, in which time passes at constant height, follows from its works.
-
-        Args:
-            fall: of the logarithm of the force in the step. For this rank's cells.
-        """
-        return True
-
-    def restart_estimate(self) -> None:
-        """Estimate from the last equilibrium on, which was reached by steps without an estimate."""
 
     # ---- time ------------------------------------------------------------------------------------------------------
 

@@ -22,16 +22,12 @@ from pydantic_core import PydanticCustomError
 from coilset.meshes.springs.spring import PAST, SpringEntry, SpringSpec
 from coilset.meshes.springs.stations import ElementsPerTurn
 from coilset.model.base.entry import Strict, Whole, check_entries
+from coilset.model.base.package import Entry
 from coilset.model.base.yaml import read_data
-from coilset.model.case.endurance import EnduranceSpec
 from coilset.model.case.head_freedoms import FREEDOMS, ForceLineSpec, HeadsSpec
-from coilset.model.case.heat import HeatSpec
-from coilset.model.case.limits import AnyLimit
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
-from coilset.model.case.sheet import SheetSpec
-from coilset.model.case.working import WorkingSpec
 from coilset.model.equilibrium import petsc_options
 from coilset.model.equilibrium.settings import CONSTANTS, MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
@@ -340,7 +336,8 @@ class Case(Strict):
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()
     heat: Annotated[
-        HeatSpec | None,
+        Any,
+        Entry("coilset.model.case.heat:HeatSpec"),
         Field(description="where the heat of plastic work flows; left out: it stays where it is produced"),
     ] = None
     accuracy: Annotated[
@@ -359,18 +356,21 @@ class Case(Strict):
         ),
     ]
     working: Annotated[
-        WorkingSpec | None,
+        Any,
+        Entry("coilset.model.case.working:WorkingSpec"),
         Field(description="lengths or forces between which the finished spring works; left out: none are reported"),
     ] = None
     limits: Annotated[
-        dict[Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")], AnyLimit] | None,
+        Any,
+        Entry("coilset.model.case.limits:Limits"),
         Field(
             description="between which values results must be: name, such as free_length or force_at_37, → "
             "[low, high], {nominal, tolerance}, or EN 15800 grade 2"
         ),
     ] = None
     endurance: Annotated[
-        EnduranceSpec | None,
+        Any,
+        Entry("coilset.model.case.endurance:EnduranceSpec"),
         Field(description="fatigue strength of the wire, for its life between the outermost working states"),
     ] = None
     force_line: Annotated[
@@ -379,7 +379,9 @@ class Case(Strict):
     ] = None
 
     sheet: Annotated[
-        SheetSpec | None, Field(description="head of the data sheet by `coilset sheet --out sheet.pdf`")
+        Any,
+        Entry("coilset.model.case.sheet:SheetSpec"),
+        Field(description="head of the data sheet by `coilset sheet --out sheet.pdf`"),
     ] = None
 
     @field_validator("material")

@@ -58,3 +58,6 @@ AnyLimit = Annotated[
     Discriminator(_kind),
 ]
 """A range, a tolerance about a nominal value, or a grade of EN 15800 about the formula's value."""
+
+Limits = dict[Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")], AnyLimit]
+"""Names of results, each with its limits."""

@@ -16,6 +16,8 @@ from pydantic import AfterValidator, BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
+from coilset.model.base.package import Entry
+
 KINDS = {float: "number", int: "whole number", str: "text", bool: "`true`, `false`", Any: "any value"}
 PLURALS = {"number": "numbers", "whole number": "whole numbers", "text": "texts", "any value": "any values"}
 UNITLESS = {"1": "", "of the option": "", "turns": ""}  # words of the reference that no axis needs
@@ -164,7 +166,10 @@ def _descriptions(annotation: Any) -> Iterator[str]:
 def _forms(annotation: Any, metadata: tuple[Any, ...]) -> Iterator[Form]:
     """The forms that a type allows; `metadata` belongs to it, that of the innermost first."""
     origin, arguments = get_origin(annotation), get_args(annotation)
-    if origin is Annotated:
+    entry = next((extra for extra in metadata if isinstance(extra, Entry)), None)
+    if entry:
+        yield from _forms(entry.type, tuple(extra for extra in metadata if extra is not entry))
+    elif origin is Annotated:
         within: list[Any] = []
         for extra in annotation.__metadata__:
             within += extra.metadata if isinstance(extra, FieldInfo) else [extra]

@@ -109,7 +109,7 @@ def _has_past(spring: object) -> bool:
 def _past(rod: Rod, spring: SpringSpec) -> _Past:
     """What the sections of a rod went through; collective."""
     state = {name: rod.state[name].equilibrium for name in START}
-    law = rod.sections.law_over_time.over(state, state)
+    law = rod.sections.law_over_step.over(state, state)
     plastic = _cold(law.parts.plastic)
     return _Past(
         plastic if rod.law.returns_cold else law.parts._replace(plastic=plastic),

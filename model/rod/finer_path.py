@@ -15,25 +15,20 @@ between path and chord by 4, so that
 is the error of the section forces. Errors that plastic flow erases are erased here, too.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.body.state import State, Where
-from coilset.model.rod.assembly import blocks
 from coilset.model.rod.elements import Element
+from coilset.model.rod.section_states import CLOCKS, in_blocks, of_cells
 from coilset.model.runtime.kernels import njit
 from coilset.model.section.sections import Sections
 
 if TYPE_CHECKING:  # a solve loads MPI in another thread meanwhile
     from mpi4py import MPI
-
-BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
-CLOCKS = "clock", "halfway_clock"  # of the whole rod, at the end of a step, and half way along its path
-
-Block = tuple[slice, Sections]  # of cells
 
 
 class FinerPath:
@@ -64,13 +59,14 @@ class FinerPath:
         }
         # the path's end takes the place of its start, which is not needed any more then
         self._end = {name: field.equilibrium for name, field in self._fields.items()}
-        self._on_the_way = {name: values[:BLOCK].copy() for name, values in self._end.items()}
+        self._blocks, self._lost = list(in_blocks(sections)), False
+        longest = max((cells.stop - cells.start for cells, _ in self._blocks), default=0)
+        self._on_the_way = {name: values[:longest].copy() for name, values in self._end.items()}
         self._start = self._end | {"strain": self._strain.equilibrium}
         if "clock" in state:
             clock, halfway = (state[name] for name in CLOCKS)
             self._start["clock"], self._end["clock"] = clock.equilibrium, clock.trial
             self._on_the_way["clock"] = halfway.trial
-        self._blocks, self._lost = list(in_blocks(sections)), False
 
     def follow(
         self,
@@ -90,8 +86,8 @@ class FinerPath:
             rate: of the strains at the end of the step, times its size; None if it is not known.
 
         Returns:
-            False if the law found no solution on this rank: the finer path then continues from the step's own end, see
-            `catch_up`, and the error is not changed.
+            False if the law found no solution on this rank: the finer path then continues from the end of the step
+            itself once that is committed, see `catch_up`, and the error is not changed.
         """
         strain, change = self._strain, self._strain.trial - self._strain.equilibrium
         middle = strain.equilibrium + self._halfway(change, ratio, rate, kinked)
@@ -127,10 +123,9 @@ class FinerPath:
         return part * change + away
 
     def catch_up(self) -> None:
-        """Continue from the end of a step, which the sections have reached, if the law found no solution in it."""
+        """Continue from the end of a step, which is committed, if the law found no solution in it."""
         if self._lost:
-            for name, field in self._fields.items():
-                field.equilibrium[:] = self._state[name].trial
+            self.restart()
 
     def _follow(self, cells: slice, sections: Sections, middle: np.ndarray, s: np.ndarray) -> bool:
         """Advance a block of cells over `middle`, all cells' strains there, and write their errors."""
@@ -151,10 +146,15 @@ class FinerPath:
             field.equilibrium[:] = self._state[name].equilibrium
 
     def works(self, length: np.ndarray) -> tuple[float, float, float, float]:
-        """Works of the error of the section forces, N mm; see Body.
+        """Works of the error of the section forces, at the end of a step and before its commit.
 
         Args:
             length: of the rank's own elements, shape (cells,), mm.
+
+        Returns:
+            Four works: of the error on the step's deformation; of the share of the error that this step added, on the
+            step's deformation and on that of the very first step; of the whole error on the latter. For this rank's
+            cells, N mm.
         """
         error = self._error
         return _works(length, self._weights, error.trial, error.equilibrium, self._increment.trial, self._first.trial)
@@ -181,14 +181,3 @@ def _works(
                 left += new * first[c, g, k]
                 error_left += force * first[c, g, k]
     return own, new_own, left, error_left
-
-
-def in_blocks(sections: Sections) -> Iterator[Block]:
-    """Cells that are followed together, and their sections."""
-    for part in blocks(slice(0, len(sections.radius)), BLOCK):
-        yield part, sections.part(part)
-
-
-def of_cells(arrays: Mapping[str, np.ndarray], cells: slice) -> dict[str, np.ndarray]:
-    """The cells' part of the sections' arrays, with the rod's clocks."""
-    return {name: values if name in CLOCKS else values[cells] for name, values in arrays.items()}

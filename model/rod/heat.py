@@ -15,9 +15,9 @@ from coilset.model.base.agreement import max_of_ranks
 from coilset.model.body.state import Where
 from coilset.model.material.creep.law import HOURS, TEMPERATURE
 from coilset.model.material.law.law import Law
-from coilset.model.rod.finer_path import CLOCKS
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.rod.rod import Rod
+from coilset.model.rod.section_states import CLOCKS
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.ground import section_points
 

@@ -17,7 +17,6 @@ from coilset.model.base.extremes import largest
 from coilset.model.body.body import Body, Moment
 from coilset.model.body.lever import Lever
 from coilset.model.body.state import Field, State, Where
-from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.law.law import Law
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
@@ -25,7 +24,6 @@ from coilset.model.rod.coefficients import Coefficients, timoshenko_factor
 from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.element_kernel import ElementKernel
 from coilset.model.rod.elements import THESIS, Element
-from coilset.model.rod.finer_path import CLOCKS, FinerPath
 from coilset.model.rod.kinematics import (
     Configuration,
     StressFree,
@@ -35,10 +33,9 @@ from coilset.model.rod.kinematics import (
 )
 from coilset.model.rod.numbering import Numbering
 from coilset.model.rod.prediction import Prediction
-from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
+from coilset.model.rod.section_states import CLOCKS, KEPT, POINTS, SURFACE, SectionStates
 from coilset.model.rotations.triads import chord_triads
 from coilset.model.runtime.threads import Threads
-from coilset.model.section import surface
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 
@@ -70,6 +67,7 @@ class Rod(Body):
             `own`, `strain`, shape (cells, sections, 6), and the arrays of the sections, of the owned cells; of these
             `point_state`, shape (cells, sections, points, n_state), and `surface_state` are always there. Rods of up to
             KEPT elements, whose law is rate-independent, also keep `section_forces` and `section_tangents`.
+        points: SectionStates, what evaluations write of the section points.
         numbering: Numbering of the unknowns.
         coefficients: Coefficients of the forms, with the section strains and forces of the trial state.
         chart: tangents of the nodes' trial rotation charts, shape (nodes, 3, 3).
@@ -106,7 +104,7 @@ class Rod(Body):
         self.sections = make_sections(
             kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree, threads
         )
-        self.in_time = self.sections.law_over_time.in_time
+        self.in_time = self.sections.law_over_step.in_time
 
         self.V = fem.functionspace(mesh, forms.rod_element(element))
         self.increment = fem.Function(self.V)
@@ -120,7 +118,6 @@ class Rod(Body):
 
         self.coefficients = Coefficients(element, timoshenko_factor(law.E, law.G, self.radius, self.l0))
         self._increment = self.increment.x.array
-        self._finer: FinerPath | None = None
         self.levers: list[Lever] = []
         self.arms: dict[int, np.ndarray] = {}
         self._forms = compiled_forms(self.comm, element)
@@ -141,7 +138,7 @@ class Rod(Body):
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
         self._own = state.add("own", np.zeros((n, self.element.own)), Where.ELEMENT)
         self._strain = state.add("strain", c.e, Where.ELEMENT)
-        self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
+        self.points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
         self._forces: list[Field] = []  # at the last equilibrium; an element's tangents take 576 bytes
         if self.in_time is None and self.mesh.topology.index_map(1).size_global <= KEPT:
             known = {"section_forces": c.s, "section_tangents": c.D}
@@ -191,19 +188,19 @@ class Rod(Body):
     @property
     def point_state(self) -> np.ndarray:
         """State at the section points, MPa: trial, in a long rod committed; (cells, sections, points, n_state)."""
-        return self._points[POINTS]
+        return self.points[POINTS]
 
     @property
     def surface_state(self) -> np.ndarray:
         """State of the points on the wire's surface, shape (cells, sections, surface points, n_state), MPa."""
-        return self._points[SURFACE]
+        return self.points[SURFACE]
 
     # ---- Body ------------------------------------------------------------------------------------------------------
 
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
         self._move()
-        return self._points.update(self.coefficients.s, self.coefficients.D)
+        return self.points.update(self.coefficients.s, self.coefficients.D)
 
     def recall(self) -> bool:
         """Forces and tangents of the last equilibrium, unless they change in time; see Body."""
@@ -237,29 +234,13 @@ class Rod(Body):
 
     def advance(self) -> None:
         """Update the points on the wire's surface to the end of the increment, and those of a long rod; see Body."""
-        self._points.follow()
-        if self._finer is not None:
-            self._finer.catch_up()
+        self.points.follow()
         if self.in_time is not None:  # in the next step no time passes, not even half way, without `pass_time`
             clock, halfway = (self.state[name].trial for name in CLOCKS)
             halfway[:] = clock
 
-    def estimate_errors(self) -> None:
-        """Follow every step on a finer path from now on; see Body."""
-        self._finer = FinerPath(self.sections, self.state, self._points.bearing, self.element, self.comm)
-
-    def error_works(
-        self, ratio: float, kinked: bool, final: bool, rate: np.ndarray | None = None
-    ) -> tuple[float, float, float, float]:
-        """Works of the errors of all steps so far and of the last one; see Body."""
-        assert self._finer is not None, "estimate_errors comes before"
-        end = None if rate is None else self._strain_rate(rate)
-        if not self._finer.follow(self.coefficients.s, ratio, kinked, final, end):
-            return np.nan, np.nan, np.nan, np.nan
-        return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
-
-    def _strain_rate(self, rate: np.ndarray) -> np.ndarray:
-        """Of the section strains at the trial state, from that of the local unknowns."""
+    def strain_rate(self, rate: np.ndarray) -> np.ndarray:
+        """Of the section strains at the trial state, from that of the local unknowns, for any unit of time."""
         there, strain = self._increment.copy(), self._strain.trial.copy()
         self._increment += DIFFERENCE * rate
         self._move()
@@ -267,19 +248,6 @@ class Rod(Body):
         self._increment[:] = there
         self._move()
         return found
-
-    def resolves_time(self, fall: float) -> bool:
-        """Whether the finer path resolves the error of a step in time; see Body."""
-        if not isinstance(self.in_time, CreepLaw):
-            return True
-        end, middle = (self.state[name] for name in CLOCKS)
-        stress = surface.equivalent(self.surface_state, self.sections.components).max(initial=0.0)
-        return self.in_time.is_resolved((end.equilibrium, middle.trial, end.trial), float(stress), fall)
-
-    def restart_estimate(self) -> None:
-        """Estimate from the last equilibrium on; see Body."""
-        assert self._finer is not None, "estimate_errors comes before"
-        self._finer.restart()
 
     @cached_property
     def _prediction(self) -> Prediction:
@@ -321,7 +289,7 @@ class Rod(Body):
         """With tangents that hold where κ sets in; see Body."""
         D = self.coefficients.D
         found = D.copy()
-        if self.law.data.deviates_from_normality and not self._points.hold_onset(D):
+        if self.law.data.deviates_from_normality and not self.points.hold_onset(D):
             D[:] = found
         try:
             yield

@@ -6,15 +6,18 @@ it. So an evaluation keeps one element's at a time, and a step's end finds them 
 """
 
 import copy
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
 from coilset.model.body.state import Field, State, Where
-from coilset.model.material.creep.law import RateLaw
-from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
+from coilset.model.rod.assembly import blocks
 from coilset.model.section.sections import Sections
 
 POINTS, SURFACE = "point_state", "surface_state"
+BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
+CLOCKS = "clock", "halfway_clock"  # of the whole rod, at the end of a step, and half way along its path
 KEPT = 4096  # elements up to which all points' trial states are kept: as many as a processor's caches may hold
 
 
@@ -29,9 +32,7 @@ class SectionStates:
         temperature: of the clocks at the start, K.
     """
 
-    def __init__(
-        self, sections: Sections, state: State, strain: Field, in_time: RateLaw | None, temperature: float
-    ) -> None:
+    def __init__(self, sections: Sections, state: State, strain: Field, in_time: Any, temperature: float) -> None:
         self._sections, self._strain, cells = sections, strain, len(sections.radius)
         passing = sections.passing if cells > KEPT else ()
         self._in_place = (*passing, SURFACE)
@@ -68,7 +69,7 @@ class SectionStates:
     def hold_onset(self, D: np.ndarray) -> bool:
         """Write the section tangents at the trial strains of a law that holds where κ sets in; as `Sections.update`."""
         sections, strain = copy.copy(self._sections), self._strain.trial
-        sections.law_over_time = sections.law_over_time.held()
+        sections.law_over_step = sections.law_over_step.held()
         end = {name: values.copy() for name, values in self._on_the_way.items() if name not in sections.iterate}
         return bool(sections.update(strain, self._start, end, np.empty(strain.shape), D))
 
@@ -84,3 +85,14 @@ class SectionStates:
             sections.update_surface(strain, start, reached)
             for name in self._in_place:
                 start[name][:] = reached[name]
+
+
+def in_blocks(sections: Sections) -> Iterator[tuple[slice, Sections]]:
+    """Cells that are followed together, and their sections."""
+    for part in blocks(slice(0, len(sections.radius)), BLOCK):
+        yield part, sections.part(part)
+
+
+def of_cells(arrays: Mapping[str, np.ndarray], cells: slice) -> dict[str, np.ndarray]:
+    """The cells' part of the sections' arrays, with the rod's clocks."""
+    return {name: values if name in CLOCKS else values[cells] for name, values in arrays.items()}

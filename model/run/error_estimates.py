@@ -43,7 +43,6 @@ from coilset.model.results.stresses import change_of_sign, shear_inside, to_the_
 from coilset.model.run.followed_sections import FollowedSections
 from coilset.model.run.load_history import LoadHistory
 from coilset.model.run.working import working_states
-from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.rules import polar
 from coilset.model.standards.case_warnings import keeps_elastic_warping, warping_can_be_estimated
 
@@ -193,7 +192,7 @@ class _Watch:
         self.companion, self.comm, self.radius = companion, companion.comm, radius
         section, rule = companion.case.mesh.section, companion.rod.rule
         finer = polar(max(RINGS, 3 * section.radial // 2), max(ANGLES, 3 * len(rule) // (2 * section.radial)))
-        outline, case = outline_of(rule), companion.case
+        outline, case = rule.outline, companion.case
         if outline is not None:
             finer = outline.rule(FINER_OUTLINE * len(rule))
         warps = outline is not None and section.kind == "warping"

@@ -3,23 +3,48 @@
 import copy
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.material.creep.in_time import LawOverTime
+from coilset.model.base.package import package
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.loop import PointLaw
+from coilset.model.material.point.over_step import law_over_step
 from coilset.model.runtime.kernels import KERNEL, njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
-from coilset.model.section.ground import Ground, ground_sections, rim_rule
 from coilset.model.section.integration import FIBRES, section
-from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.sections import Sections
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 from coilset.model.section.wire import BEND
+
+OUTLINES = "coilset.model.section.ground"  # the door to sections that are no disks
+
+
+class Ground(NamedTuple):
+    """The sections of a rod that are no disks: what grinding has cut, and all of a wire that is not round.
+
+    Attributes:
+        which: number of each section among them, −1 if it is a disk, shape (cells, sections).
+        fibres: y, z, u, v of the points, mm, and their areas, mm², see `integration`; shape (cut sections, 5, points).
+        shape: g, a22, a23, a32, a33, see `shape`; shape (cut sections, 5, points).
+    """
+
+    which: np.ndarray
+    fibres: np.ndarray
+    shape: np.ndarray
+
+    @classmethod
+    def none(cls, shape: tuple[int, ...]) -> "Ground":
+        """Of disks only, shape (cells, sections)."""
+        return cls(np.full(shape, -1), np.empty((0, FIBRES, 0)), np.empty((0, SHAPE, 0)))
+
+    def part(self, cells: slice) -> "Ground":
+        """Those of some of the cells; the numbers, and what they stand for, stay."""
+        return self._replace(which=self.which[cells])
 
 
 class FibreSections(Sections):
@@ -57,15 +82,14 @@ class FibreSections(Sections):
     ) -> None:
         self.threads = threads or Threads()
         self.radius, self.placement, self.weights, self.curved = radius, placement, rule.weights, curved
-        self.law_over_time = LawOverTime(law, parameters, temperature, 3)
-        self.components += self.law_over_time.columns(self.components[3:6])
+        self.law_over_step = law_over_step(law, parameters, temperature, 3)
+        self.components += self.law_over_step.columns(self.components[3:6])
         self.y, self.z = np.ascontiguousarray(rule.points.T)
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
-        whole = outline_of(rule)
-        self.ground = ground_sections(
-            placement, radius, curved, whole, lambda left: rule if left is whole else left.rule(len(rule))
-        )
-        self.ground_rim = ground_sections(placement, radius, curved, whole, rim_rule)
+        self.ground = self.ground_rim = Ground.none(placement.stretch.shape)
+        if rule.outline is not None or placement.is_cut:
+            cut = package(OUTLINES, "wire that is ground or not round")
+            self.ground, self.ground_rim = cut.points_and_rims(placement, radius, curved, rule)
 
     def part(self, cells: slice) -> "FibreSections":
         """The sections of some of the cells."""
@@ -84,7 +108,7 @@ class FibreSections(Sections):
 
     def initial_state(self) -> dict[str, np.ndarray]:
         """Unstressed points: `point_state` (cells, sections, points, n_state), and `surface_state` on the surface."""
-        row = self.law_over_time.unstressed()
+        row = self.law_over_step.unstressed()
         shape = self.placement.stretch.shape
         return {
             "point_state": np.tile(row, (*shape, len(self.y), 1)),
@@ -100,7 +124,7 @@ class FibreSections(Sections):
         from it stays in `shape`, have α ΔT/g, and the law takes off α ΔT: the rest, α ΔT κ y/g, is that of the bend
         −κ α ΔT, which is taken off here.
         """
-        growth = self.law_over_time.growth(start, trial) if self.curved else 0.0
+        growth = self.law_over_step.growth(start, trial) if self.curved else 0.0
         increment = strain - start["strain"]
         if growth:
             place = self.placement
@@ -121,7 +145,7 @@ class FibreSections(Sections):
         """See Sections."""
         disk = self.y, self.z, self.weights
         states = start["point_state"], trial["point_state"]
-        law = self.law_over_time.over(start, trial)
+        law = self.law_over_step.over(start, trial)
         return self._run(law, self.ground, disk, self._increment(strain, start, trial), states, s, D, with_tangent)
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
@@ -133,7 +157,7 @@ class FibreSections(Sections):
         states = start["surface_state"], trial["surface_state"]
         s = np.empty((*self.placement.stretch.shape, 6))
         D = np.empty((*s.shape, 6))  # never written
-        law = self.law_over_time.over(start, trial)
+        law = self.law_over_step.over(start, trial)
         self._run(law, self.ground_rim, rim, self._increment(strain, start, trial), states, s, D, False, True)
 
     def _run(

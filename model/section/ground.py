@@ -2,36 +2,17 @@
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
+from coilset.model.section.fibres import Ground
 from coilset.model.section.integration import FIBRES
-from coilset.model.section.outlined_section import WHOLE, Outlined, Section, Segment, outline_of
+from coilset.model.section.outlined_section import WHOLE, Outlined, Section, Segment
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.shape import SHAPE
 
 BENDS, NODES = 16, 5  # intervals of κ r in a unit, and nodes in each, between which the warping is interpolated
 DIGITS = 12  # of κ r, to which sections must agree to be the same
-
-
-class Ground(NamedTuple):
-    """The sections of a rod that are no disks: what grinding has cut, and all of a wire that is not round.
-
-    Attributes:
-        which: number of each section among them, −1 if it is a disk, shape (cells, sections).
-        fibres: y, z, u, v of the points, mm, and their areas, mm², see `integration`; shape (cut sections, 5, points).
-        shape: g, a22, a23, a32, a33, see `shape`; shape (cut sections, 5, points).
-    """
-
-    which: np.ndarray
-    fibres: np.ndarray
-    shape: np.ndarray
-
-    def part(self, cells: slice) -> "Ground":
-        """Those of some of the cells; the numbers, and what they stand for, stay."""
-        return self._replace(which=self.which[cells])
 
 
 def cut_sections(placement: Placement, outline: Outlined | None = None) -> tuple[np.ndarray, list[Section]]:
@@ -49,13 +30,27 @@ def cut_sections(placement: Placement, outline: Outlined | None = None) -> tuple
 
 def section_points(rule: DiskRule, placement: Placement) -> tuple[np.ndarray, np.ndarray]:
     """Points of all sections in wire radii, (n, g, points, 2), and their shares of the disk, (n, g, points)."""
-    which, cut = cut_sections(placement, outline_of(rule))
+    which, cut = cut_sections(placement, rule.outline)
     places = np.broadcast_to(rule.points, (*which.shape, *rule.points.shape)).copy()
     weights = np.broadcast_to(rule.weights, (*which.shape, len(rule))).copy()
     for section, at in zip(cut, np.argwhere(which >= 0), strict=True):
         left = section.rule(len(rule))
         places[*at], weights[*at] = left.points, left.weights
     return places, weights
+
+
+def points_and_rims(placement: Placement, radius: np.ndarray, curved: bool, rule: DiskRule) -> tuple[Ground, Ground]:
+    """The sections that are no disks, by the points of a rule and by those on the surface.
+
+    Args:
+        placement: of all sections.
+        radius: wire radius of each element, shape (cells,), mm.
+        curved: whether the sections know the wire's curvature.
+        rule: of the whole section.
+    """
+    whole, given = rule.outline, (placement, radius, curved, rule.outline)
+    points = ground_sections(*given, lambda left: rule if left is whole else left.rule(len(rule)))
+    return points, ground_sections(*given, rim_rule)
 
 
 def ground_sections(
@@ -65,15 +60,7 @@ def ground_sections(
     outline: Outlined | None,
     rule_of: Callable[[Section], DiskRule],
 ) -> Ground:
-    """The sections that are no disks.
-
-    Args:
-        placement: of all sections.
-        radius: wire radius of each element, shape (cells,), mm.
-        curved: whether the sections know the wire's curvature.
-        outline: of a wire that is not round.
-        rule_of: points and weights that a section gets.
-    """
+    """The sections that are no disks; arguments as above, with the points and weights that a section gets."""
     which, cut = cut_sections(placement, outline)
     bend = placement.curvature * radius[:, None] if curved else np.zeros(which.shape)
     parts = [
@@ -87,7 +74,7 @@ def ground_sections(
         which[whole] = len(cut) + number.ravel()
         parts += whole_sections(outline, rule_of(outline), *kinds)
     if not parts:
-        return Ground(which, np.empty((0, FIBRES, 0)), np.empty((0, SHAPE, 0)))
+        return Ground.none(which.shape)
     return Ground(which, *(np.array(part) for part in zip(*parts, strict=True)))
 
 

@@ -221,7 +221,7 @@ class Outlined(Section):
         rest = points - len(weights)
         places = np.concatenate([places, np.repeat(places[:1], rest, axis=0)])  # the middle may be a hole
         name = f"outline {rings} × {sum(along)}"
-        return OutlinedRule(places, np.concatenate([weights, np.zeros(rest)]), name, self)
+        return DiskRule(places, np.concatenate([weights, np.zeros(rest)]), name, self)
 
     def rim(self) -> np.ndarray:
         """See Section: where rays at equal angles from the y axis cross the curve's polygon."""
@@ -243,18 +243,6 @@ class Outlined(Section):
         centre = weights @ places / weights.sum()
         axes = np.diag(1.0 / np.abs(places - centre).max(axis=0))
         return Basis.over(Monomials(exponents(degree), centre, axes), places, weights)
-
-
-@dataclass(frozen=True)
-class OutlinedRule(DiskRule):
-    """The points of a section that is no disk; the sum of the weights is its area over π."""
-
-    outline: Outlined
-
-
-def outline_of(rule: DiskRule) -> Outlined | None:
-    """The section whose points a rule has; None: a disk."""
-    return rule.outline if isinstance(rule, OutlinedRule) else None
 
 
 class Warping:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -10,11 +11,15 @@ ON_AXIS = 1e-12  # below which a coordinate is the sine of π with its rounding
 
 @dataclass(frozen=True)
 class DiskRule:
-    """Points (y, z) of the unit disk, shape (points, 2), and their weights, shape (points,)."""
+    """Points (y, z) of the unit disk, shape (points, 2), and their weights, shape (points,).
+
+    Those of a wire that is not round have its Outlined section as `outline`, and their weights its area over π as sum.
+    """
 
     points: np.ndarray
     weights: np.ndarray
     name: str
+    outline: Any = None
 
     def __len__(self) -> int:
         return len(self.weights)

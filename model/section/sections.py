@@ -2,11 +2,12 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
+from coilset.model.material.point.over_step import LawOverStep
 from coilset.model.runtime.threads import Threads
 
 
@@ -20,7 +21,7 @@ class Sections(ABC):
         iterate: arrays of the trial state on which no section force depends: where an iteration of their own begins.
         radius: wire radius of each element, shape (cells,), mm; placement: Placement of the sections.
         threads: Threads that advance them.
-        law_over_time: LawOverTime.
+        law_over_step: LawOverStep.
     """
 
     components: tuple[str, ...]
@@ -29,7 +30,7 @@ class Sections(ABC):
     radius: np.ndarray
     placement: Placement
     threads: Threads
-    law_over_time: Any
+    law_over_step: LawOverStep
 
     @abstractmethod
     def part(self, cells: slice) -> Self:

@@ -23,11 +23,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.functions import ROWS_START, SHEAR, YOUNG
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.loop import PointLaw, flow_points
 from coilset.model.material.point.groups import hooke
+from coilset.model.material.point.over_step import law_over_step
 from coilset.model.runtime.kernels import KERNEL, njit
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
@@ -43,7 +43,6 @@ from coilset.model.section.condensation import (
 )
 from coilset.model.section.fibres import spoil_failed
 from coilset.model.section.ground import cut_sections
-from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.sections import Sections
@@ -93,9 +92,9 @@ class WarpingSections(Sections):
     ) -> None:
         self.threads = threads or Threads()
         self.radius, self.placement = radius, placement
-        self.law_over_time = LawOverTime(law, parameters, temperature, 6)
-        self.components += self.law_over_time.columns(self.components[6:12])
-        outline = outline_of(rule)
+        self.law_over_step = law_over_step(law, parameters, temperature, 6)
+        self.components += self.law_over_step.columns(self.components[6:12])
+        outline = rule.outline
         basis = Basis.of_disk(degree) if outline is None else outline.basis(degree)
         which, cut = cut_sections(placement, outline)
         left, bases = [one.rule(len(rule)) for one in cut], [one.basis(degree) for one in cut]
@@ -126,7 +125,7 @@ class WarpingSections(Sections):
         `warping` are the a, shape (cells, sections, unknowns), and `warping_slope` is da/de, shape (cells, sections,
         unknowns, 6); `warping_strain` are the section strains at which they were found, shape (cells, sections, 6).
         """
-        row = self.law_over_time.unstressed()
+        row = self.law_over_step.unstressed()
         shape = self.placement.stretch.shape
         return {
             "point_state": np.tile(row, (*shape, self.weights.shape[1], 1)),
@@ -147,7 +146,7 @@ class WarpingSections(Sections):
     ) -> bool:
         """See Sections; always with the tangent. Without `warping_strain` in `trial` the iteration begins at the last
         equilibrium."""
-        place, law, known = self.placement, self.law_over_time.over(start, trial), trial.get(KNOWN, np.array(np.nan))
+        place, law, known = self.placement, self.law_over_step.over(start, trial), trial.get(KNOWN, np.array(np.nan))
         good = self.threads.run(
             update_sections,
             len(self.radius),
@@ -174,7 +173,7 @@ class WarpingSections(Sections):
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Bring the points on the wire's surface to the end of the increment; as `FibreSections.update_surface`."""
-        place, law = self.placement, self.law_over_time.over(start, trial)
+        place, law = self.placement, self.law_over_step.over(start, trial)
         self.threads.run(
             update_surface,
             len(self.radius),

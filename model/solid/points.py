@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.loops import advance_points
+from coilset.model.material.point.over_step import law_over_step
 from coilset.model.solid.kinematics import push_forward, stretches
 
 COMPONENTS = 6
@@ -26,7 +26,7 @@ class MaterialPoints:
     def __init__(self, law: Law, temperature: float | None = None) -> None:
         self.law = law
         self.temperature = law.reference_temperature if temperature is None else temperature
-        self._over_time = LawOverTime(law, law.parameters(temperature), temperature, COMPONENTS)
+        self._over_time = law_over_step(law, law.parameters(temperature), temperature, COMPONENTS)
         self.in_time = self._over_time.in_time
         self.pass_time({}, {})
 

@@ -9,8 +9,8 @@ import numpy as np
 from coilset.meshes.springs.manufacture import Relief
 from coilset.model.manufacture.coiling import bent
 from coilset.model.manufacture.initial_state import relief_intervals
-from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.law.law import Law
+from coilset.model.material.point.over_step import law_over_step
 from coilset.model.section.rules import polar, upper_half
 from coilset.model.section.wire import Wire
 from coilset.model.uniform_coil.rod import UniformState, unloaded
@@ -36,7 +36,7 @@ def coiled(one: np.ndarray, law: Law, relief: Relief | None, temperature: float 
     at = law.reference_temperature if temperature is None else temperature
     parameters = law.parameters(at)
     intervals = relief_intervals(law, parameters, at, relief, INTERVALS)
-    virgin = LawOverTime(law, parameters, at, 3).unstressed()
+    virgin = law_over_step(law, parameters, at, 3).unstressed()
     d, D, pitch, _ = one
     wanted = np.array([0.5 * D, pitch / (2.0 * np.pi)])
     wanted /= wanted @ wanted  # curvature and torsion

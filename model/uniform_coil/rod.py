@@ -22,10 +22,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.base.errors import SolveError
-from coilset.model.material.creep.in_time import LawOverTime, law_in_time
+from coilset.model.material.creep.in_time import law_in_time
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.loop import PointLaw
 from coilset.model.material.point.loops import with_loop
+from coilset.model.material.point.over_step import law_over_step
 from coilset.model.runtime.kernels import njit
 from coilset.model.section.rules import DiskRule, polar, upper_half
 from coilset.model.uniform_coil.section import RISE, Coil, force_shear, step
@@ -75,7 +76,7 @@ def unloaded(coils: np.ndarray, law: Law, rule: DiskRule, temperature: float | N
     n = len(coils)
     radius, rise = 0.5 * coils[:, 1], coils[:, 2] / (2.0 * np.pi)
     q = np.stack([radius, np.arctan2(rise, radius), rise, np.ones(n)], axis=1)
-    row = LawOverTime(law, law.parameters(temperature), temperature, 3).unstressed()
+    row = law_over_step(law, law.parameters(temperature), temperature, 3).unstressed()
     points = np.tile(row, (n, len(rule), 1))
     return UniformState(coils, q, points, np.zeros(n), np.zeros(n), np.zeros((n, 4)), np.zeros((n, 4, 4)))
 

@@ -27,7 +27,6 @@ from ufl import cross, dot, grad, inner
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.rod.forms import at_sections, section_element
 from coilset.model.rod.rod import Rod
-from coilset.model.section.outlined_section import outline_of
 
 TONNE = 1e-3  # per kg: with N, mm and s masses are in t
 
@@ -65,7 +64,7 @@ def section_mass(rod: Rod, density: float) -> SectionMass:
     tangent = np.einsum("cij,cgj->cgi", triads, rotation[..., 0, :])
     polar = 0.5 * mass * rod.radius[:, None] ** 2
     inertia = 0.5 * polar[..., None, None] * (np.eye(3) + tangent[..., :, None] * tangent[..., None, :])
-    if outline_of(rod.rule) is not None:
+    if rod.rule.outline is not None:
         (y, z), share = rod.rule.points.T, rod.rule.weights.sum()
         second = rod.rule.weights @ np.stack([y**2 + z**2, z**2, y**2], axis=1) / share
         mass = mass * share

@@ -66,6 +66,7 @@ def test_every_model_of_a_file_is_on_a_page():
         inherited = pending.pop().__subclasses__()
         pending += inherited
         known |= {kind for kind in inherited if not kind.__subclasses__()}
+    known = {kind for kind in known if kind.__module__.startswith(("coilset.model", "coilset.meshes"))}  # none of tests
     inputs = {kind for kind in known if not kind.__module__.startswith("coilset.model.standards.wires")}
     shown = {group.model for root in MODELS.values() for group in reference.groups(root)}
     assert len(inputs) > 40

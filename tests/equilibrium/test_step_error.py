@@ -137,7 +137,7 @@ def test_the_example_is_within_its_accuracy(example):
 def test_where_the_error_is_not_known_steps_go_on(example):
     """A finer path on which the law finds no stress, once: no estimate for that step, and one for the next."""
     analysis = Analysis(read_case(example, ["mesh.elements_per_turn=8", "loading=[{to: {travel: 9}}]"]), MPI.COMM_SELF)
-    _, finer = analysis.rod._finer._blocks[0]
+    _, finer = analysis.continuation.step_error._finer._blocks[0]
     update, first_halves = finer.update, []
 
     def fail_once(*args):

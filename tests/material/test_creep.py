@@ -10,13 +10,13 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from coilset.model.material import library
-from coilset.model.material.creep.in_time import LawOverTime
 from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
 from coilset.model.material.creep.rod import without_yield
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.material.point import increment, points
 from coilset.model.material.point.loops import follow, with_loop
+from coilset.model.material.point.over_step import law_over_step
 from coilset.model.material.point.stage import ROOM
 from coilset.model.runtime.kernels import KERNEL, njit
 
@@ -257,7 +257,7 @@ def test_no_time_is_the_return_mapping(components):
     """Without time the law is the parameter array; rows with creep's columns take the same way, and keep them."""
     law = library.load("ck15")
     creeping = Law(law.data.model_copy(update={"creep": law_of(CREEP).data.creep}))
-    over_time = LawOverTime(creeping, creeping.parameters(), None, components)
+    over_time = law_over_step(creeping, creeping.parameters(), None, components)
     clock = {"clock": np.array([3.0, COLD, 2.0])}
     p = over_time.over(clock, clock)
     assert p.address == with_loop(law.parameters(), components).address

@@ -10,11 +10,11 @@ from typer.testing import CliRunner
 
 from coilset.model.base.errors import InputError
 from coilset.model.material import library
+from coilset.model.material.creep.entries import Creep
 from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
 from coilset.model.material.identification import creep_fit
 from coilset.model.material.identification.relaxation_tests import Readings, read_relaxation
 from coilset.model.material.identification.relaxing import loss
-from coilset.model.material.law.file import Creep
 from coilset.model.material.point.loops import follow
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.time import creep_fit as studies

@@ -5,7 +5,8 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.export import write_mesh
-from coilset.meshes.springs.spring import MeasuredSpec, SpringSpec
+from coilset.meshes.springs.measured import MeasuredSpec
+from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.case import check
 from coilset.model.material import library
 from coilset.model.run.analysis import Analysis

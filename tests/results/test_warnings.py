@@ -11,7 +11,7 @@ from mpi4py import MPI
 
 from coilset.model.base.warning import Warning
 from coilset.model.case import read_case
-from coilset.model.material.law.file import CreepTests
+from coilset.model.material.creep.entries import CreepTests
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.records.record import Result, Step
 from coilset.model.results.records.summary import summarise

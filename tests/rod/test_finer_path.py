@@ -7,7 +7,7 @@ from mpi4py import MPI
 from coilset.meshes.springs.placement import straight
 from coilset.model.body.state import State, Where
 from coilset.model.material import library
-from coilset.model.rod import finer_path
+from coilset.model.rod import section_states
 from coilset.model.rod.elements import THESIS
 from coilset.model.rod.finer_path import FinerPath
 from coilset.model.runtime import threads
@@ -136,7 +136,7 @@ def test_many_elements_are_followed_block_by_block_and_side_by_side(monkeypatch,
     monkeypatch.setattr(threads, "LEAST", 1)
     radii, errors = np.linspace(2.0, 3.0, 5), []
     for block, number in ((2, 1), (64, 1), (64, 2), (2, 2)):
-        monkeypatch.setattr(finer_path, "BLOCK", block)
+        monkeypatch.setattr(section_states, "BLOCK", block)
         path = Path(radii, kind, ground=(3, 4), number=number)
         finer = follower(path)
         for k in (1, 2):

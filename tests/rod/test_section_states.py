@@ -22,7 +22,7 @@ SPRINGS = {
 def run(example, settings, fails=()):
     """The analysis after its program; the finer path finds no stress in the calls of these numbers."""
     analysis = Analysis(read_case(example, [*SMALL, *settings]), MPI.COMM_SELF)
-    finer, calls = analysis.rod._finer, []
+    finer, calls = analysis.continuation.step_error._finer, []
     follow = finer._follow
 
     def failing(*args):

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.springs.spring import MeasuredSpec, SpringSpec
+from coilset.meshes.springs.measured import MeasuredSpec
+from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.case import read_case
 from coilset.model.material import library
 from coilset.model.standards.buckling import buckling_travel

@@ -122,6 +122,8 @@ class Continuation:
         if outcome.converged:
             self.guess.remember(rate if accurately else None)  # equal steps do not depend on estimates
             self.system.commit()
+            if self.step_error is not None:
+                self.step_error.accept()
             self.negative_pivots = outcome.negative_pivots
         else:
             if outcome.estimate is not None:

@@ -1,10 +1,10 @@
 """What the length of the steps leaves wrong: an estimate after each step, and the size that the next one may have.
 
-A body that estimates errors gives the works of the error of its inner forces on the step's deformation, from which the
-errors of the driven head's force and height follow, and on the first step's, which is elastic: what will be wrong when
-the spring is released, the set. docs/theory/equilibrium.md ("Step size") derives them. What all steps together leave
-shall not exceed the required accuracy: where more than half of it is used up, a step may bring in less, in proportion
-to the rest.
+A finer path of the rod's sections gives the works of the error of their forces on the step's deformation, from which
+the errors of the driven head's force and height follow, and on the first step's, which is elastic: what will be wrong
+when the spring is released, the set. docs/theory/equilibrium.md ("Step size") derives them. What all steps together
+leave shall not exceed the required accuracy: where more than half of it is used up, a step may bring in less, in
+proportion to the rest.
 """
 
 import math
@@ -17,6 +17,9 @@ from coilset.model.body.state import Where
 from coilset.model.equilibrium.newton.outcome import Estimate
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.heads import Heads
+from coilset.model.rod.finer_path import FinerPath
+from coilset.model.rod.section_states import CLOCKS
+from coilset.model.section import surface
 
 ORDER = 3
 LEAST_REST = 0.2  # of what a step may bring in: it may do so even if nothing of the accuracy is left
@@ -34,14 +37,14 @@ class StepError:
     """Estimates for a spring between its heads.
 
     Args:
-        control: Heads of a System whose body estimates errors, see Body.
+        control: Heads of the System of a rod.
         accuracy: required error of force, over the maximum force so far.
     """
 
     def __init__(self, control: Heads, accuracy: float, steps: StepControl) -> None:
-        self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, control.system.body
-        self._body.estimate_errors()
-        system = control.system
+        self.control, self.accuracy, self.steps, system = control, accuracy, steps, control.system
+        self._rod = rod = system.line.rod
+        self._finer = FinerPath(rod.sections, rod.state, rod.points.bearing, rod.element, rod.comm)
         self._memory = system.state.add("step_error", np.zeros(3), Where.SHARED)
         system.state.add("rates", np.zeros(system.layout.size_local), Where.UNKNOWN)  # at the end of the last step
 
@@ -59,13 +62,13 @@ class StepError:
         memory[CLOSED] = control.system.last.closed
         kinked = controls and memory[CLOSED] != last[CLOSED]
         along = None if rate is None else control.system.with_ghosts(rate.getArray(readonly=True))
-        works = self._body.error_works(ratio, bool(kinked), not controls, along)
+        works = self._works(ratio, bool(kinked), not controls, along)
         if comm.size > 1:
             works = tuple(comm.allreduce(np.array(works)).tolist())
         (start, before), (end, force) = control.measured("equilibrium"), control.measured("trial")
         travel = end - start
         memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
-        still, none = abs(travel) <= STILL * control.free_length, greatest <= ROUNDING * self._body.axial_force
+        still, none = abs(travel) <= STILL * control.free_length, greatest <= ROUNDING * self._rod.axial_force
         if still or none or (self.takes_time() and abs(force - before) <= STILL_FORCE * greatest):
             return self._in_time(works, greatest, float(last[FIRST]))
         memory[FIRST] = last[FIRST] or travel
@@ -76,12 +79,20 @@ class StepError:
             return Estimate(math.nan, math.nan, 0.0, 1.0)
         return Estimate(error, error / stiffness if stiffness else math.nan, share, self._factor(share))
 
+    def _works(self, ratio: float, kinked: bool, final: bool, rate: np.ndarray | None) -> tuple[float, ...]:
+        """`FinerPath.works` of this rank at the end of a step; NaN if they are unknown."""
+        rod = self._rod
+        end = None if rate is None else rod.strain_rate(rate)
+        if not self._finer.follow(rod.coefficients.s, ratio, kinked, final, end):
+            return np.nan, np.nan, np.nan, np.nan
+        return self._finer.works(np.linalg.norm(rod.state["chord"].trial, axis=1))
+
     def _share(self, new: float, works: tuple[float, ...], first: float, greatest: float) -> float:
         """The greater of the errors that the step brings in, at its height and what will be left, over what it may.
 
         Args:
             new: at its height, N.
-            works: of `Body.error_works`.
+            works: of `FinerPath.works`.
             first: travel of the first step of all, mm; greatest: maximum force so far, N.
         """
         left, before = works[2] / first, (works[3] - works[2]) / first
@@ -96,7 +107,7 @@ class StepError:
 
     def _in_time(self, works: tuple[float, ...], greatest: float, first: float) -> Estimate:
         """A held spring is deformed by no travel of its own; the first step of all shows what a travel does."""
-        if greatest <= ROUNDING * self._body.axial_force or first == 0.0 or not self.takes_time():
+        if greatest <= ROUNDING * self._rod.axial_force or first == 0.0 or not self.takes_time():
             return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
         share = self._share(0.0, works, first, greatest)
         if math.isnan(share):
@@ -108,12 +119,19 @@ class StepError:
         """Does the error of the step follow from its works? Forces up to `faint`, N, do not fall; collective."""
         comm = self.control.system.comm
         before, after = (max(abs(self.control.measured(when)[1]), faint) for when in ("equilibrium", "trial"))
-        resolves = self._body.resolves_time(max(math.log(before / after), 0.0))
-        return comm.allreduce(resolves, MPI.LAND) if comm.size > 1 else resolves
+        rod, fall = self._rod, max(math.log(before / after), 0.0)
+        end, middle = (rod.state[name] for name in CLOCKS)
+        stress = float(surface.equivalent(rod.surface_state, rod.sections.components).max(initial=0.0))
+        resolves = rod.in_time.is_resolved((end.equilibrium, middle.trial, end.trial), stress, fall)
+        return comm.allreduce(resolves, MPI.LAND) if comm.size > 1 else bool(resolves)
+
+    def accept(self) -> None:
+        """Go on from the end of the step that was judged, which is committed now."""
+        self._finer.catch_up()
 
     def restart(self) -> None:
         """Go on from the last equilibrium, which was reached by steps that were not judged."""
-        self._body.restart_estimate()
+        self._finer.restart()
 
     def _factor(self, share: float) -> float:
         steps = self.steps

@@ -10,9 +10,9 @@ own temperature, which changes between the steps (`rod/heat.py`); by time harden
 
 import numpy as np
 
+from coilset.model.material.creep.entries import Creep, RateDependence
 from coilset.model.material.creep.flow import SCALED
 from coilset.model.material.creep.forms import FORMS
-from coilset.model.material.law.file import Creep, RateDependence
 from coilset.model.material.law.functions import RATE
 from coilset.model.material.law.parts import Parts
 
@@ -50,6 +50,10 @@ class RateLaw:
             return np.array([hours, temperature, 0.0])
         worth = self._passed(float(hours - before[HOURS]), float(before[TEMPERATURE]), temperature)
         return np.array([hours, temperature, before[WORTH] + worth])
+
+    def is_resolved(self, clocks: tuple[np.ndarray, np.ndarray, np.ndarray], stress: float, fall: float) -> bool:
+        """Whether two halves of a step show how wrong the whole one is; arguments as of `CreepLaw.is_resolved`."""
+        return True
 
     def over(self, start: np.ndarray, end: np.ndarray) -> Parts:
         """The law over the time between two clocks."""

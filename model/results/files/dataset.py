@@ -14,7 +14,6 @@ from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section.ground import section_points
-from coilset.model.section.outlined_section import outline_of
 from coilset.model.section.rules import SURFACE_POINTS
 
 Variables = dict[str, Variable]
@@ -68,7 +67,7 @@ def point_state(setup: Setup, result: Result) -> Variables:
         "torsion": Variable(("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),
         **_coordinates(setup, snapshots),
     }
-    outline = outline_of(rule)
+    outline = rule.outline
     if outline is not None:
         about = {"about": "points of the wire's outline, y and z in wire radii"}
         data["outline"] = Variable(("corner", "direction"), outline.boundary.points(DRAWN), about)

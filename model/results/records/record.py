@@ -12,7 +12,6 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
 from coilset.model.fatigue.strength import Strength
-from coilset.model.material.law.file import CreepTests
 from coilset.model.results.records.frame import Frame
 from coilset.model.results.records.units import quantity
 from coilset.model.rod.elements import Element
@@ -308,7 +307,7 @@ class Limits:
     accuracy: float | None
     shear: float | None = None
     shear_of: str = ""
-    creep: CreepTests | None = None
+    creep: Any = None
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,8 @@ from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Egg, Outline, Oval, Tube, rectangle
 from coilset.model.base.style import STYLE
 from coilset.model.material import library
-from coilset.model.section.outlined_section import Outlined, OutlinedRule
-from coilset.model.section.rules import polar
+from coilset.model.section.outlined_section import Outlined
+from coilset.model.section.rules import DiskRule, polar
 from coilset.model.slice.analysis import ACROSS, INSIDE
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.slice import Coil, Slice
@@ -178,7 +178,7 @@ def coil(outline: Outline, index: float, of: Kind) -> tuple[np.ndarray, np.ndarr
     kind, degree, points = of
     places, rule = surface(section.boundary), section.rule(points)
     weights = np.append(rule.weights, np.zeros(len(places)))  # the places are points that weigh nothing
-    rule = OutlinedRule(np.concatenate([rule.points, places]), weights, rule.name, section)
+    rule = DiskRule(np.concatenate([rule.points, places]), weights, rule.name, section)
     one = OutlinedCoil(library.load("ck15"), kind, rule, height, mean, pitch, degree)
     across = [one.sections.components.index(name) for name in ("t12", "t13")]
 

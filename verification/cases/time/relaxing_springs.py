@@ -53,7 +53,7 @@ def section(index: float, kind: str) -> np.ndarray:
     material = law()
     wire = HelixSection(material, kind, index, 0.0, polar(10, 16))
     scale = np.array([1.0, 1.0, 1.0, WIRE, WIRE, WIRE])
-    creep, start = CreepLaw(material.data.creep, material.parts()), wire.start  # type: ignore[arg-type]
+    creep, start = CreepLaw(material.data.creep, material.parts()), wire.start
     start["clock"] = creep.clock(0.0, WARM)
     s, D = np.empty((1, 2, 6)), np.empty((1, 2, 6, 6))
     first = RIM * np.pi * WIRE**3 / (16.0 * wire.coil_radius)
