@@ -35,12 +35,21 @@ class InputError(CoilsetError):
 
 @contextlib.contextmanager
 def reading(file: object) -> Iterator[None]:
-    """Context in which whatever a reader of a file raises becomes the error for it, with the reason's first line."""
+    """Context in which whatever a reader of a file raises becomes the error for it, with the reason's first line.
+
+    A damaged file, or one of another version, can fail in any way, also within libraries.
+    """
     try:
         yield
-    except (OSError, ValueError, LookupError, TypeError, RecursionError, MemoryError) as error:
+    except CoilsetError:
+        raise
+    except Exception as error:
         reason = str(error).partition("\n")[0] or type(error).__name__
-        raise InputError(f"is not readable: {reason}", "", file) from None
+        if isinstance(error, KeyError):  # a name, or what a library says of one
+            reason = reason.strip("'\"").partition(". ")[0] if " " in reason else f"{reason} is missing"
+        elif isinstance(error, TypeError | AttributeError):  # whose words are about objects of the program
+            reason = "it is damaged, or was written by another version of coilset"
+        raise InputError(f"is not readable: {reason}", "", file) from error
 
 
 @contextlib.contextmanager

@@ -13,7 +13,7 @@ def _text(value: Any) -> Any:
     return str(value) if isinstance(value, int | float | date) and not isinstance(value, bool) else value
 
 
-Word = Annotated[str, BeforeValidator(_text), Field(max_length=60)]
+Word = Annotated[str, BeforeValidator(_text, json_schema_input_type=str | float), Field(max_length=60)]
 
 
 class SheetSpec(Strict):

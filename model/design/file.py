@@ -98,7 +98,10 @@ class Conditions(Strict):
     ] = None
     force_at: Annotated[
         list[ForceAt],
-        BeforeValidator(lambda value: [value] if isinstance(value, dict | ForceAt) else value),
+        BeforeValidator(
+            lambda value: [value] if isinstance(value, dict | ForceAt) else value,
+            json_schema_input_type=ForceAt | list[ForceAt],
+        ),
         Field(default_factory=list, strict=False, description="a force at a height, or a list of them"),
     ]
     residual_shear_inside_MPa: Annotated[

@@ -24,17 +24,23 @@ def report(folder: str | Path) -> None:
     """
     folder = Path(folder)
     _check(folder)
-    if (folder / sweep_page.FILE).is_file():
-        path = sweep_page.write_sweep_report(folder)
-    elif (folder / design_page.FILE).is_file():
+    if (folder / design_page.FILE).is_file() and not (folder / sweep_page.FILE).is_file():
         _solve_found(folder)
-        path = design_page.write_design_report(folder)
-    elif (folder / nest_page.FILE).is_file():
-        path = nest_page.write_nest_report(folder)
-    else:
-        path = write_report(open_run(folder))
+    with reading(folder):
+        path = _write(folder)
     size = path.stat().st_size / 1e6
     Console().say(f"{path}: {size:.1f} MB; open it in a browser")
+
+
+def _write(folder: Path) -> Path:
+    """The page of whatever results there are; its figures meet what is damaged in them."""
+    if (folder / sweep_page.FILE).is_file():
+        return sweep_page.write_sweep_report(folder)
+    if (folder / design_page.FILE).is_file():
+        return design_page.write_design_report(folder)
+    if (folder / nest_page.FILE).is_file():
+        return nest_page.write_nest_report(folder)
+    return write_report(open_run(folder))
 
 
 def _solve_found(folder: Path) -> None:

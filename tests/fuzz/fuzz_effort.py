@@ -7,7 +7,7 @@ import os
 
 from hypothesis import HealthCheck, settings
 
-FILES = int(os.environ.get("COILSET_FUZZ", "600"))
+FILES = int(os.environ.get("COILSET_FUZZ", "300"))
 SEARCHED = "COILSET_FUZZ" in os.environ
 
 

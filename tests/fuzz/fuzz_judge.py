@@ -2,28 +2,59 @@
 
 import resource
 import time
+from collections import Counter
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any
 
+import numpy as np
+from fuzz_files import EXAMPLES
 from fuzz_schema import breaches
+from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
+from coilset.meshes.springs.measured import MeasuredSpec
+from coilset.model.base.columns import read_columns
+from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.base.yaml import load_yaml, read_data
 from coilset.model.case import Case, check
+from coilset.model.case import read_case as case_of
 from coilset.model.case.targets import check_targets
+from coilset.model.design.file import DesignFile, read_design_file
 from coilset.model.material import library, programs
+from coilset.model.material.identification.elastic_part import TESTER, check_elastic, corrected
+from coilset.model.material.identification.experiments import read_test
+from coilset.model.material.identification.relaxation_tests import read_relaxation
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.programs import Program
+from coilset.model.nest.file import NestFile, read_nest
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.files.labelled import labelled
+from coilset.model.run.build import build_wire
 from coilset.model.run.effort import Effort
+from coilset.model.spring_fit.pressing import read_pressing
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_law
+from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import SweepSpec
+from coilset.model.vibration.lift import read_lift
+from coilset.scripts.commands.report import report
+from coilset.scripts.commands.sheet import Options, sheet
+from coilset.verification.comparison import _checked
 
 SLOWEST = 2.0  # seconds of the processor for a refusal
+DRAWN = 10.0  # of a page, whose last figure may be the one that meets the damage
 LARGEST = 2**30  # bytes that a file may add to the memory of the process
 LONGEST = 500  # characters of a line, without the paths in it
+SMALL = 20_000  # section points of a wire that is built
+PROGRAM = Program.model_validate(
+    {
+        "name": "torsion and release",
+        "steps": [{"to": {"gamma12": 0.03}, "increments": 6}, {"to": {"tau12": 0.0}, "increments": 2}],
+    }
+)
+COUNTED: Counter[str] = Counter()  # how many files of a kind were read, or refused
 
 
 def read_case(path: str) -> None:
@@ -38,33 +69,76 @@ def read_case(path: str) -> None:
     case_warnings(case, spring, law)
     if case.temperature is not None:
         law.known(case.temperature)
+    if (len(turns) - 1) * len(rule) < SMALL:
+        build_wire(case, spring, law, MPI.COMM_SELF, 1)
 
 
-READERS: dict[str, tuple[Callable[[str], Any], type]] = {
+def read_material(path: str) -> None:
+    """A material, and what it does at a point in torsion."""
+    law = library.load(path)
+    programs.run(law, PROGRAM)
+
+
+def read_experiment(path: str) -> None:
+    """A test of wire as `material fit` reads it."""
+    test = read_test(path)
+    corrected(test, 84000.0, 0.29, {}, tuple(TESTER))
+    check_elastic(test, 84000.0, 0.29)
+    read_test(path, engineering=True)
+
+
+def read_results(folder: str) -> None:
+    """A results folder as `coilset.open`, `sheet --results` and `--resume` read it."""
+    case = Path(folder) / "case.yaml"
+    refused(labelled, folder)
+    refused(lambda folder: sheet(case, Options(results=folder, pictures=False)), folder)
+    Checkpoint(folder, case_of(case)).load(MPI.COMM_SELF)
+
+
+def refused(read: Callable[[str], Any], path: str) -> CoilsetError | None:
+    """The error that refuses a file in one line, None if it is read."""
+    try:
+        with np.errstate(all="ignore"):
+            read(path)
+    except CoilsetError as error:
+        check_line(str(error).replace(path, "FILE"))
+        return error
+    return None
+
+
+READERS: dict[str, tuple[Callable[[str], Any], type | None]] = {
     "case": (read_case, Case),
-    "material": (library.load, MaterialFile),
+    "material": (read_material, MaterialFile),
     "program": (programs.read, Program),
     "sweep": (Plan, SweepSpec),
+    "design": (read_design_file, DesignFile),
+    "nest": (read_nest, NestFile),
+    "measured": (lambda path: MeasuredSpec(file=path).build(), None),
+    "test": (read_experiment, None),
+    "press": (lambda path: read_pressing(path, case_of(EXAMPLES / "material" / "springs" / "spring.yaml")), None),
+    "compare": (lambda path: _checked(read_columns(path), False), None),
+    "relaxation": (read_relaxation, None),
+    "motion": (read_lift, None),
+    "journal": (lambda path: list(read_records(path)), None),
+    "results": (read_results, None),
+    "page": (report, None),
 }
 
 
-def judge(kind: str, path: str, text: str) -> None:
+def judge(kind: str, path: str, text: str = "") -> None:
     """Read a file, and fail for anything but data that keep the reference, or a refusal in one short line."""
     reader, model = READERS[kind]
     before, began = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time()
-    try:
-        reader(path)
-        refusal = None
-    except InputError as error:
-        refusal = str(error)
+    refusal = refused(reader, path)
     took, after = time.process_time() - began, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     assert 1024 * (after - before) < LARGEST, "takes too much memory"
-    if refusal is not None:
-        assert took < SLOWEST, f"refused after {took:.1f} s: {refusal[:200]}"
-        check_line(refusal.replace(path, "FILE"))
-    else:
+    COUNTED[f"{kind} {'read' if refusal is None else 'refused'}"] += 1
+    if isinstance(refusal, InputError):
+        assert took < (DRAWN if kind == "page" else SLOWEST), f"refused after {took:.1f} s: {refusal}"
+    elif refusal is None and model is not None:
+        own = {name: value for name, value in load_yaml(text).items() if kind != "design" or name in model.model_fields}
         schema = reference(model)
-        assert breaches(load_yaml(text), schema, schema.get("$defs", {})) == []
+        assert breaches(own, schema, schema.get("$defs", {})) == []
 
 
 @cache

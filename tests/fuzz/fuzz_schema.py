@@ -2,6 +2,7 @@
 
 import math
 import re
+from datetime import date
 from operator import ge, gt, le, lt
 from typing import Any
 
@@ -43,7 +44,7 @@ def _is_number(data: Any) -> bool:
 KINDS = {
     "number": _is_number,
     "integer": lambda data: _is_number(data) and data == int(data),
-    "string": lambda data: isinstance(data, str),
+    "string": lambda data: isinstance(data, str | date),  # YAML reads a date from its text
     "boolean": lambda data: isinstance(data, bool),
     "null": lambda data: data is None,
     "array": lambda data: isinstance(data, list),

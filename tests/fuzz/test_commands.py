@@ -12,6 +12,7 @@ import pytest
 from fuzz_effort import looks
 from fuzz_files import EXAMPLES
 from fuzz_judge import SLOWEST, check_line
+from fuzz_tables import RELAXATION
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,7 +20,7 @@ from coilset.model.base.errors import CoilsetError
 from coilset.model.run import build
 from coilset.model.slice import analysis as slices
 from coilset.scripts import main, precompile, ranks, running
-from coilset.scripts.commands import design, material, mesh, report, solid, solve, sweep, verify
+from coilset.scripts.commands import design, material, mesh, nest, report, solid, solve, sweep, verify
 from coilset.scripts.commands import slice as slice_command
 from coilset.scripts.startup import typer
 from coilset.verification.benchmarks import everyday
@@ -59,6 +60,15 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     "material fit test.csv --G 80000 --nu 0.3": ["--temperature", "300", "--no-saturation", "--name", "mine"],
     "design design.yaml": ["--overwrite", "--resume", "--out", "there"],
     "report run": ["--overwrite", "--out", "there"],
+    "nest nest.yaml": ["--overwrite", "--no-pictures", "--out", "there"],
+    "modes run": ["--at", "block-3mm", "--at", "height=x", "--count", "3", "--glued", "--no-pictures"],
+    "surge run --lift 3 --speed 3000": ["--opening", "720", "--motion", "taken", "--at", "force=1e9", "--no-pictures"],
+    "fields run": ["--overwrite", "taken"],
+    "animate run": ["taken"],
+    "compare run": ["--overwrite", "--out", "there"],
+    "material certificate --rm 1800 --rp02 1500": ["--G", "81500", "--nu", "0.6", "--name", "../x", "--out", "there"],
+    "material creep relaxation.csv": ["--form", "garofalo", "--error", "2", "--name", "mine", "--overwrite"],
+    "material fit --spring press.csv spring.yaml": ["--known", "G=x", "--tester", "friction", "--law", "thesis"],
     "bench": ["--full", "--cold", "--against", "taken", "--out", "there"],
     "compile": ["--overwrite"],
     "verify bend-45": ["--fast", "--list", "--page", "page.md", "--out", "there"],
@@ -143,8 +153,14 @@ def place(tmp_path, monkeypatch):
         ("case.yaml", "ck15_presetting.yaml"),
         ("program.yaml", "material/tension.yaml"),
         ("test.csv", "material/fit/tension.csv"),
+        ("press.csv", "material/springs/press_1.csv"),
+        ("spring.yaml", "material/springs/spring.yaml"),
+        ("nest.yaml", "nested/nest.yaml"),
+        ("nested_outer.yaml", "nested/nested_outer.yaml"),
+        ("nested_inner.yaml", "nested/nested_inner.yaml"),
     ):
         (tmp_path / name).write_bytes((EXAMPLES / source).read_bytes())
+    (tmp_path / "relaxation.csv").write_text(RELAXATION)
     (tmp_path / "sweep.yaml").write_text("case: case.yaml\nvary: {spring.pitch: [11.0, 12.0]}\n")
     (tmp_path / "design.yaml").write_text(DESIGN)
     (tmp_path / "taken").write_text("mine")
@@ -163,13 +179,15 @@ def place(tmp_path, monkeypatch):
         (design, "solve"),
         (everyday, "timed"),
         (precompile, "warm"),
-        (report, "open_run"),
+        (report, "_write"),
+        (nest, "press"),
         (material, "write_material"),
         (material, "write_picture"),
         (material, "_write_csv"),
     ):
         monkeypatch.setattr(module, name, reach)
     monkeypatch.setattr("coilset.model.material.identification.fit.fit", reach)
+    monkeypatch.setattr("coilset.model.spring_fit.fit.fit_springs", reach)
     monkeypatch.setattr("coilset.model.material.programs.run", reach)
     monkeypatch.setattr("coilset.scripts.commands.test.test", reach)
     return tmp_path

@@ -6,6 +6,7 @@ import json
 import os
 import re
 import resource
+import shutil
 import signal
 from dataclasses import replace
 
@@ -277,6 +278,25 @@ def test_a_folder_in_the_way_of_the_page_is_seen_before(tmp_path):
     (tmp_path / "report.html").mkdir()
     with pytest.raises(InputError, match="cannot be written: there is a folder of this name"):
         report(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["contacts", "seat_height_mm", "bottom_length_mm"])
+def test_results_that_lack_a_column_are_one_line(folder, tmp_path, name):
+    """Found by the fuzzer: a figure meets what is missing, and so does nothing before it."""
+    shutil.copytree(folder, tmp_path / "damaged", ignore=shutil.ignore_patterns("report.html"))
+    for path in (tmp_path / "damaged").glob("*.csv"):
+        path.write_text(path.read_text().replace(name, "x", 1))
+    with pytest.raises(InputError, match=f"damaged: is not readable: No variable named '{name}'"):
+        report(tmp_path / "damaged")
+    assert not (tmp_path / "damaged" / "report.html").exists()
+
+
+def test_a_summary_of_other_entries_is_one_line(folder, tmp_path):
+    shutil.copytree(folder, tmp_path / "damaged")
+    summary = json.loads((folder / "summary.json").read_text())
+    (tmp_path / "damaged" / "summary.json").write_text(json.dumps(summary | {"warnings": ["a text"]}))
+    with pytest.raises(InputError, match="is not readable: it is damaged, or was written by another version"):
+        report(tmp_path / "damaged")
 
 
 def test_a_kill_while_it_is_written_leaves_the_page_before(folder, page):
