@@ -96,7 +96,7 @@ def solve(
     ),
     quiet: bool = typer.Option(False, "--quiet", help="print warnings and errors only"),
     json: bool = typer.Option(False, "--json", help="print a line of JSON a step, for scripts"),
-    verbose: bool = typer.Option(False, "--verbose", help="also print each iteration: norm, step length"),
+    verbose: bool = typer.Option(False, "--verbose", help="print each step and each iteration: norm, step length"),
     method: str = typer.Option(None, help="iteration method: newton, modified-newton, bfgs, broyden, arc-length, ..."),
     threads: int = THREADS,
 ) -> None:

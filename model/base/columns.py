@@ -87,7 +87,7 @@ def read_rows(path: str | Path) -> list[tuple[int, list[str]]]:
         if len(data) > LONGEST_FILE:
             raise InputError(f"is longer than {LONGEST_FILE / 1e6:g} MB", "", path)
         lines = data.decode("utf-8-sig").splitlines()
-        lines = ["" if line.startswith("#") else line for line in lines]
+        lines = ["" if line.lstrip(' \t"').startswith("#") else line for line in lines]
         reader = csv.reader(lines, delimiter=_separator(lines), strict=True)
         return [(reader.line_num, row) for row in reader if any(map(str.strip, row))]
     except UnicodeDecodeError:

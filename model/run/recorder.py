@@ -239,6 +239,10 @@ class Recorder:
         """Record what no other record shows."""
         self.result = replace(self.result, warnings=(*self.result.warnings, warning))
 
+    def add_finer(self, words: str) -> None:
+        """Record what became of a finer run."""
+        self.result = replace(self.result, finer=words)
+
     def snapshot(self, name: str) -> Snapshot:
         """The current state of the spring, gathered on rank 0; its force is that of the last step; collective."""
         force = self.result.steps[-1].force_N if self.result.steps else self.control.force

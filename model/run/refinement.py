@@ -59,13 +59,14 @@ def within_accuracy(first: Analysis, run: Callable[[Analysis, str], object]) -> 
         run: runs one; the text says what is finer than in the one before, empty for the first.
 
     Returns:
-        The last analysis whose run is complete. Where a finer one finds no equilibrium, a warning is logged.
+        The last analysis whose run is complete; its result states why there is no finer one, if its error calls for
+        it.
 
     Raises:
         SolveError: the first found no equilibrium.
     """
     run(first, "")
-    analysis, left, cost = first, left_open(first.case), 1.0
+    analysis, left, cost, failed = first, left_open(first.case), 1.0, ""
     for _ in range(ROUNDS):
         finer = finer_case(analysis, left, MOST / cost)
         if finer is None:
@@ -75,9 +76,33 @@ def within_accuracy(first: Analysis, run: Callable[[Analysis, str], object]) -> 
             run(again, finer.changes)
         except SolveError as error:
             log.warning("the run with %s ended early and is discarded: %s", finer.changes, error)
+            failed = f"a run with {finer.changes} found no equilibrium and was discarded"
             break
         analysis, cost = again, cost * finer.cost
+    analysis.recorder.add_finer(failed or left_out(analysis, left))
     return analysis
+
+
+def left_out(analysis: Analysis, left: set[str]) -> str:
+    """Why a complete run has no finer one that would bring its worst number within its accuracy, in words; empty if
+    that is accurate enough, or wrong by what the case gives itself; collective.
+
+    Args:
+        analysis: of the run.
+        left: causes that may be made finer.
+    """
+    errors, allowed = _errors(analysis)
+    over = {name: (getattr(errors.total, name) or 0.0) / error for name, error in allowed.items()} if errors else {}
+    worst = max(over, key=lambda name: over[name], default="")
+    if errors is None or over.get(worst, 0.0) <= 1.0:
+        return ""
+    if errors.largest(worst) not in left:
+        return ""
+    factors = _factors(_parts(errors, worst), allowed[worst], left)
+    if not (factors and _in_reach(factors)):
+        return "no finer run of a reasonable length would bring it there"
+    finer = _finer(analysis, factors)
+    return f"a run with {finer.changes}, about {finer.cost:.2g} times as long, was left out"
 
 
 def finer_case(analysis: Analysis, left: set[str], most: float = MOST) -> Finer | None:
@@ -89,12 +114,17 @@ def finer_case(analysis: Analysis, left: set[str], most: float = MOST) -> Finer 
         left: causes that may be made finer.
         most: times the cost of the run that the finer one may have.
     """
+    errors, allowed = _errors(analysis)
+    factors = needed(errors, allowed, left, most) if errors else {}
+    return _finer(analysis, factors) if factors else None
+
+
+def _errors(analysis: Analysis) -> tuple[RunErrors | None, dict[str, float]]:
+    """Errors of a run that may be made finer, None of another, and those that its accuracy allows; collective."""
     setup, result, comm = analysis.setup, analysis.result, analysis.comm
     if result.errors is None or is_turned(setup, result.steps):
-        return None
-    allowed = comm.bcast(allowed_errors(setup, result) if comm.rank == 0 else None)
-    factors = needed(result.errors, allowed, left, most)
-    return _finer(analysis, factors) if factors else None
+        return None, {}
+    return result.errors, comm.bcast(allowed_errors(setup, result) if comm.rank == 0 else None)
 
 
 def left_open(case: Case) -> set[str]:
@@ -122,8 +152,8 @@ def needed(errors: RunErrors, allowed: Mapping[str, float], left: set[str], most
     """
     factors: dict[str, float] = {}
     for name, error in allowed.items():
-        parts = {cause.name: getattr(getattr(errors, cause.name), name) for cause in fields(RunErrors)}
-        own = _of_number(parts, error, left)
+        own = _factors(_parts(errors, name), error, left)
+        own = own if _in_reach(own) else {}
         joined = factors | {cause: max(factors.get(cause, 1.0), factor) for cause, factor in own.items()}
         if cost_of(joined) <= most:
             factors = joined
@@ -135,16 +165,25 @@ def cost_of(factors: Mapping[str, float]) -> float:
     return math.prod(factor ** COSTS[cause] for cause, factor in factors.items())
 
 
-def _of_number(parts: Mapping[str, float | None], most: float, left: set[str]) -> dict[str, float]:
-    """`needed` for one number with these parts of its error; empty if one of them is not known."""
+def _parts(errors: RunErrors, name: str) -> dict[str, float | None]:
+    """The error of a number by its causes."""
+    return {cause.name: getattr(getattr(errors, cause.name), name) for cause in fields(RunErrors)}
+
+
+def _in_reach(factors: Mapping[str, float]) -> bool:
+    """Whether anything is made finer by so much."""
+    return all(factor <= FINEST[cause] for cause, factor in factors.items())
+
+
+def _factors(parts: Mapping[str, float | None], most: float, left: set[str]) -> dict[str, float]:
+    """`needed` for one number with these parts of its error, in reach or not; empty if one of them is not known."""
     known = {cause: part for cause, part in parts.items() if part is not None}
     if len(known) < len(parts) or sum(known.values()) <= most:
         return {}
     lowered = {cause for cause in left if known[cause] > SMALL * most}
     rest = sum(known[cause] for cause in lowered)
     share = (AIM * most - sum(known.values()) + rest) / rest if rest else 0.0
-    factors = {cause: share ** (-1.0 / ORDERS[cause]) for cause in lowered} if share > 0.0 else {}
-    return {} if any(factor > FINEST[cause] for cause, factor in factors.items()) else factors
+    return {cause: share ** (-1.0 / ORDERS[cause]) for cause in lowered} if share > 0.0 else {}
 
 
 def _finer(analysis: Analysis, factors: Mapping[str, float]) -> Finer:

@@ -56,6 +56,7 @@ def solve(
         InputError, SolveError: after the results so far are written.
     """
     output = VOICES[voice](comm.rank == 0)
+    output.every |= interactive
     if interactive and comm.size > 1:
         raise InputError("works on one rank only; omit -n", "--interactive")
     if interactive and voice in ("quiet", "json"):

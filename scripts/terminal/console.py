@@ -59,6 +59,7 @@ class Console(console.Console):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(highlight=False, markup=False, **options)
+        self._warned: set[tuple[str, str]] = set()
 
     def render_str(self, text: str, **options: Any) -> Text:
         """A text, of whose letters none is an order to the terminal."""
@@ -83,5 +84,8 @@ class Console(console.Console):
         self.print(made)
 
     def warn(self, text: str, kind: str = "warning") -> None:
-        """A warning, or another line that begins with its kind."""
+        """A warning, or another line that begins with its kind; once, however often it is given."""
+        if (kind, text) in self._warned:
+            return
+        self._warned.add((kind, text))
         self.print(styled("yellow", f"{kind}:", f" {text}"))

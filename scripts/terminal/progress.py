@@ -17,6 +17,7 @@ from rich.text import Text
 from coilset.model.case.phases import drives_at
 from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.results.records.labels import held_matters, largest_errors, last_released, lives_text, lost, within
+from coilset.model.results.records.rates import MAKERS
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
 from coilset.model.results.records.units import quantity as name_and_unit
 from coilset.model.run.analysis import Analysis
@@ -30,19 +31,28 @@ HEAD = f"{PRESSED}{'iter.':>6}"  # of `step_row`
 TURNED = f"{PRESSED}{'turn/°':>9}{'torque/N mm':>13}{'iter.':>6}"  # of a spring that is turned, too
 TURN = 5  # the freedom of a head about the axis, of SEAT_DOFS
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
+OFTEN = 1.0  # seconds, at least, from one row to the next within a phase
+SPARSE = 0.1  # of the time since the beginning, likewise
 
 
 class Lines:
-    """A line per step, and a table at the end; colours on a terminal only.
+    """A line for each phase, and for steps in between as time passes, and a table at the end; colours on a terminal
+    only.
 
     Args:
         talks: False on ranks that print nothing.
+
+    Attributes:
+        every: whether each step has its line.
     """
+
+    every = False
 
     def __init__(self, talks: bool = True) -> None:
         self.console = Console(quiet=not talks)
         self._turned = False  # whether the load program turns a head
         self._began, self._from = 0.0, -1.0  # when and where the first step ended; below 0 before
+        self._start = self._said = 0.0  # when the first run began, and the last row was printed
 
     def say(self, text: str) -> None:
         """A line about the run."""
@@ -54,12 +64,12 @@ class Lines:
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
         """The run begins or continues."""
-        self.analysis, self._from = analysis, -1.0
+        self.analysis, self._from, self._start = analysis, -1.0, time.monotonic()
         for warning in analysis.setup.warnings:
             self.warn(warning.message)
         targets = ", ".join(phase.label for phase in analysis.case.loading)
         elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size
-        self.say(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
+        self.say(f"{Path(case_file).name}: {elements} elements, to {targets}{f', {ranks} ranks' * (ranks > 1)}")
         if resumed and _done(analysis) >= 1.0:
             self.say(f"all {analysis.continuation.number} steps are there: only the results are written again")
             return
@@ -78,15 +88,25 @@ class Lines:
         loading = self.analysis.case.loading
         self._turned = any(drive.freedom % SEAT_DOFS == TURN for drive in drives_at(loading, len(loading) - 1))
         self.say(f"{TURNED if self._turned else HEAD}{'points':>7}  contacts")
+        self._said = time.monotonic()
 
     def step(self, step: Step) -> None:
         """A step has been found."""
+        waiting = self._left(step)
+        if not (self.every or step.progress >= 1.0 or step.left_branch or self._is_due()):
+            return
+        self._said = time.monotonic()
         cuts, left = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else "", ""
         if step.left_branch:
             left = "  snapped" if step.released_energy_Nmm else "  left its path"
         touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
         row = f"{self._row(step)}{step.contacts:7d}  {touching}{cuts}"
-        self.console.print(Text.assemble(row, (left, "yellow"), (self._left(step), "dim")), soft_wrap=True)
+        self.console.print(Text.assemble(row, (left, "yellow"), (waiting, "dim")), soft_wrap=True)
+
+    def _is_due(self) -> bool:
+        """Whether the last row is so long ago that another one is wanted."""
+        now = time.monotonic()
+        return now - self._said > max(OFTEN, SPARSE * (now - self._start))
 
     def _row(self, step: Step) -> str:
         if not self._turned:
@@ -122,7 +142,9 @@ class Lines:
 
 
 class Verbose(Lines):
-    """A line for each iteration, too."""
+    """A line for each step and each iteration."""
+
+    every = True
 
     @contextlib.contextmanager
     def iterations(self) -> Iterator[None]:
@@ -151,10 +173,8 @@ class Quiet(Lines):
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """The warnings that were not printed at the beginning."""
-        printed = {warning.message for warning in self.analysis.setup.warnings}
         for warning in summary["warnings"]:
-            if warning["message"] not in printed:
-                self.warn(warning["message"])
+            self.warn(warning["message"])
 
 
 class JsonLines(Lines):
@@ -329,8 +349,10 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "initial rate", within(summary["rate_N_per_mm"], summary["estimated_rate_error_N_per_mm"], "N/mm", 4)
     if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
         finished = summary["rate_30_70_after_N_per_mm"]
-        name = "rate at 30 to 70 % of the travel" if finished is None else "rate of the finished spring, 30 to 70 %"
-        yield name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm")
+        name = "rate, 30 to 70 % of travel to block" if finished is None else "rate of the finished spring, 30 to 70 %"
+        rate = finished or summary["rate_30_70_N_per_mm"]
+        far = MAKERS[1] * (summary["free_length_before_mm"] - summary["block_height_mm"])
+        yield name, f"needs a travel of {far:.4g} mm" if rate is None else quantity(rate, "N/mm")
     for rate in summary["rates"]:
         yield f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm")
     if summary["force_max_is_given"]:

@@ -18,7 +18,8 @@ def test_comments_a_byte_order_mark_and_line_endings_of_spreadsheets(tmp_path):
 def test_comments_between_the_rows(tmp_path):
     """A pressed spring's table may say what follows; lines keep their numbers."""
     path = tmp_path / "test.csv"
-    path.write_text('strain,stress\n# first, as "delivered\n0.001,205.5\n\n# then\n0.002,wrong\n', encoding="utf-8")
+    rows = 'strain,stress\n# first, as "delivered\n0.001,205.5\n\n  "# then"\n0.002,wrong\n'
+    path.write_text(rows, encoding="utf-8")
     np.testing.assert_array_equal(read_columns(path).numbers("strain"), [0.001, 0.002])
     with pytest.raises(InputError, match="line 6, column stress"):
         read_columns(path).numbers("stress")

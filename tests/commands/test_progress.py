@@ -41,13 +41,37 @@ def test_a_finished_run_that_is_resumed_has_no_table_of_steps(said, tmp_path, ca
     assert not any("iter." in line for line in lines)
 
 
-@pytest.mark.parametrize(("travel", "told"), [(2, True), (-2, False)])
-def test_a_pulled_spring_has_no_rate_on_the_way_to_block(tmp_path, capsys, travel, told):
+@pytest.mark.parametrize(
+    ("travel", "told"), [(13, r"\d+\.\d{4} N/mm"), (2, "needs a travel of 12.25 mm"), (-2, None)], ids=str
+)
+def test_the_rate_is_that_on_the_way_to_block(tmp_path, capsys, travel, told):
+    """Of 17.5 mm to block. It was `none` of the travel, which a reader took for that of the run."""
     path = tmp_path / "spring.yaml"
     path.write_text(CASE)
     program = [f"loading=[{{to: {{travel: {travel}}}, steps: 1}}]", "ends=clamped"]
     solve(path, tmp_path / "out", True, program, comm=MPI.COMM_SELF)
-    assert ("rate at 30 to 70 % of the travel" in capsys.readouterr().out) == told
+    printed = capsys.readouterr().out
+    assert bool(re.search(f"rate, 30 to 70 % of travel to block +{told} ", printed)) == bool(told)
+    assert "none" not in printed.partition("rate, 30")[2].partition("maximum force")[0]
+
+
+ROW = re.compile(r" +(\d+) +\d+\.\d{4} +-?\d+\.\d{3} +\d+ ")
+
+
+@pytest.mark.parametrize(("seconds", "rows"), [(0.4, [3, 5]), (0.8, [2, 3, 5]), (1.5, [1, 2, 3, 4, 5])])
+def test_a_phase_has_a_row_and_more_as_time_passes(said, monkeypatch, seconds, rows):
+    """A run had 50 to 240 lines before its answer. So many seconds a step; a row a second at the most."""
+    times = {"now": 0.0}
+    step = Lines.step
+
+    def slow(self, found):
+        times["now"] += seconds
+        step(self, found)
+
+    monkeypatch.setattr(Lines, "step", slow)
+    monkeypatch.setattr("coilset.scripts.terminal.progress.time.monotonic", lambda: times["now"])
+    lines, _ = said()
+    assert [int(found[1]) for line in lines if (found := ROW.match(line))] == rows
 
 
 def test_json_has_the_rows_of_the_history_and_the_summary(said):
@@ -94,6 +118,15 @@ def test_verbose_prints_each_iteration(said):
             assert told[-1] < 1e-6 <= max(told)
     assert steps == 5
     assert "iteration 0" not in "".join(said()[0])
+
+
+def test_a_warning_is_printed_once(said):
+    """Those of the case came again after the results, in the same words."""
+    lines, folder = said()
+    printed = " ".join(" ".join(lines).split())
+    warnings = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["warnings"]
+    assert len(warnings) > 1
+    assert [printed.count(one["message"]) for one in warnings] == [1] * len(warnings)
 
 
 def test_names_are_printed_as_they_are(said, capsys):

@@ -1,13 +1,17 @@
 """Finer runs: what is made finer, by how much, and what is kept."""
 
 import json
+import re
+from dataclasses import replace
 
 import pytest
 from mpi4py import MPI
 
 from coilset.model.case import read_case
 from coilset.model.results.records.record import Errors, RunErrors
-from coilset.model.run.refinement import left_open, needed
+from coilset.model.results.records.warnings import run_warnings
+from coilset.model.run.analysis import Analysis
+from coilset.model.run.refinement import left_open, left_out, needed, within_accuracy
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.interrupt import Interrupt
 
@@ -59,6 +63,40 @@ def test_a_number_that_would_cost_too_much_does_not_keep_others_from_being_made_
     assert needed(found, both, ALL) == needed(found, {"force_N": 1.0}, ALL)
     assert needed(found, both, ALL, 100.0)["section"] > 2.0
     assert needed(found, both, ALL, 1.1) == {}
+
+
+PRESSED = ["mesh={}", "accuracy=0.05 %", "loading=[{to: {travel: 10}}]"]
+
+
+def test_what_is_left_out_is_stated_with_its_cost(example, monkeypatch):
+    """Advice to make finer what the program had made finer, or had left out as too long, is no advice."""
+    analysis = Analysis(read_case(example, PRESSED), MPI.COMM_SELF)
+    result = analysis.run()
+
+    def after(found, left=ALL):
+        monkeypatch.setattr(analysis.recorder, "result", replace(result, errors=found))
+        return left_out(analysis, left)
+
+    F = result.greatest_force
+    assert after(errors(0.0, 1e-4 * F, 0.0, 0.0)) == ""  # accurate
+    assert after(errors(0.0, 1e-2 * F, 0.0, 0.0), ALL - {"mesh"}) == ""  # its mesh is given: the advice is to change it
+    out_of_reach = "no finer run of a reasonable length would bring it there"
+    assert after(errors(0.0, 1.0 * F, 0.0, 0.0)) == out_of_reach
+    assert after(errors(0.0, 2e-3 * F, 1e-3 * F, 0.0), ALL - {"section"}) == out_of_reach  # of the section's part
+    assert re.fullmatch(
+        r"a run with 40 elements per turn, about 2\.\d times as long, was left out",
+        after(errors(0.0, 1.65e-3 * F, 0.0, 0.0)),
+    )
+
+
+def test_the_warning_says_what_was_left_out(example, monkeypatch):
+    """Of a run that would be finer if that might take any longer."""
+    monkeypatch.setattr("coilset.model.run.refinement.MOST", 1.0)
+    analysis = Analysis(read_case(example, FINE), MPI.COMM_SELF)
+    last = within_accuracy(analysis, lambda one, finer: one.run())
+    (warning,) = (one for one in run_warnings(last.setup, last.result) if one.name == "error")
+    assert last is analysis
+    assert re.search(r"allows; a run with .*, about \d\S* times as long, was left out$", warning.message)
 
 
 def test_entries_of_the_case_are_kept(example):

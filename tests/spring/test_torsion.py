@@ -90,6 +90,7 @@ def test_a_spring_that_is_turned_in_vain_has_reached_a_torque(monkeypatch, capsy
     loading = [{"to": {"force": 0, "top": to}, "steps": 4}]
     analysis = Analysis(check(data(to) | {"loading": loading}), MPI.COMM_SELF)
     solve, lines = analysis.newton.solve, Lines()
+    lines.every = True
 
     def fails_from_half(load, start=None):
         outcome = solve(load, start)

@@ -1,7 +1,7 @@
 """Numbers of any size in texts, with few digits."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 MOST_DECIMALS = 6
@@ -19,6 +19,17 @@ def plain(value: float, digits: int = 4) -> str:
     text = f"{value:,.{decimals(value, digits)}f}"
     text = text.rstrip("0").rstrip(".") if "." in text else text
     return "0" if text == "-0" else text
+
+
+def apart(value: float, limit: float) -> tuple[str, str]:
+    """Two numbers that differ, in two digits, or in as many more as they differ by: `2.04` and `2`, not twice `2`."""
+    texts = ((f"{value:.{digits}g}", f"{limit:.{digits}g}") for digits in range(2, 16))
+    return next((pair for pair in texts if pair[0] != pair[1]), (f"{value:g}", f"{limit:g}"))
+
+
+def listed(words: Sequence[str]) -> str:
+    """`a`, `a and b`, `a, b and c`."""
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def lives_text(lives: Mapping[str, float] | None, missing: str) -> str:

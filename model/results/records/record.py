@@ -561,6 +561,7 @@ class Result:
         mode: BucklingMode of a spring that is slender enough to buckle; else None.
         errors: RunErrors of a complete run; None where they are not estimated.
         working: the finished spring at its working lengths; None without any, and until the run is complete.
+        finer: what became of a finer run that its errors call for, in words; empty without one.
     """
 
     steps: tuple[Step, ...] = ()
@@ -574,6 +575,7 @@ class Result:
     mode: BucklingMode | None = field(default=None, repr=False)
     errors: RunErrors | None = None
     working: Working | None = field(default=None, repr=False)
+    finer: str = ""
 
     @property
     def top(self) -> Step | None:

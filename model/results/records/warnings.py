@@ -7,7 +7,7 @@ from math import isfinite
 from coilset.model.base.warning import Warning
 from coilset.model.results.fatigue import fatigue_warnings
 from coilset.model.results.records.buckling import SIDEWAYS, buckling, leaning, snapped
-from coilset.model.results.records.labels import CAUSES, NUMBERS, TURNED
+from coilset.model.results.records.labels import CAUSES, NUMBERS, TURNED, apart, listed
 from coilset.model.results.records.rates import FEW, tensions
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 from coilset.model.results.records.releases import FREE, is_turned, last_release, set_of, turned_radius
@@ -54,9 +54,10 @@ def accuracy_warning(
     """
     if error <= required:
         return None
+    found, allowed = apart(100 * error, 100 * required)
     message = (
-        f"{of} is uncertain by about {100 * error:.2g} %{size and f', {size},'} because of the step size, more than "
-        f"the case's accuracy of {100 * required:.2g} %; a smaller accuracy or more steps reduce it"
+        f"{of} is uncertain by about {found} %{size and f', {size},'} because of the step size, more than "
+        f"the case's accuracy of {allowed} %; a smaller accuracy or more steps reduce it"
     )
     return Warning("step error", place, message, error, required)
 
@@ -344,14 +345,15 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
         if error > allowed:
             worst[name] = required * error / allowed
             is_force, turned = name == "force_N", is_turned(setup, result.steps)
-            size = f"{100 * worst[name]:.2g} %" if is_force or turned else f"{error:.2g} {unit_of(name)}"
+            percent = f"{apart(100 * worst[name], 100 * required)[0]} %"
+            size = percent if is_force or turned else f"{error:.2g} {unit_of(name)}"
             words.append(f"{size} of the {force_in_words(setup, result) if is_force else NUMBERS[name]}")
     if worst:
         largest = max(worst, key=lambda name: worst[name])
         cause = errors.largest(largest)
         message = (
-            f"the estimated error is {' and '.join(words)}, mostly because of the {CAUSES[cause]}, more than the "
-            f"case's accuracy of {100 * required:.2g} % allows; {_more(cause, setup)}"
+            f"the estimated error is {listed(words)}, mostly because of the {CAUSES[cause]}, more than the "
+            f"case's accuracy of {100 * required:.2g} % allows; {result.finer or _more(cause, setup)}"
         )
         yield Warning("error", "mesh" if cause != "contact" else "contact", message, worst[largest], required)
 
