@@ -1,19 +1,24 @@
 """Measured springs beside the run of their case: measured over computed, with both errors.
 
 A folder holds `case.yaml` and `measured.csv`, one measured number a row: `quantity`, `value`, `error` (±, in the same
-unit), and where it needs them `travel_mm` and `phase` (of a `force_N`, phases from 1 on), `turn`, `angle` and `spot`
-(of a residual stress such as `stress_+45°_MPa`). Other quantities are numbers of summary.json. A number is met if
-measured and computed differ by no more than both errors together.
+unit), and where it needs them `travel_mm` or `height_mm`, and `phase` (of a `force_N`, phases from 1 on), `turn`,
+`angle` and `spot` (of a residual stress such as `stress_+45°_MPa`). Other quantities are numbers of summary.json. A
+number is met if measured and computed differ by no more than both errors together.
+
+The rows `tester_offset_mm` and `tester_compliance_mm_per_N` are not compared: they make a reading s of the travel one
+of s − s₀ − c F of the spring, and a height h one of h + c F. Forces may be in kgf or lbf, lengths in inches, by the end
+of the quantity's or column's name.
 
 A folder with `nest.yaml` in place of the case is that of two springs between the same seats, whose travel counts from
 the height at which they touch the longer one. Numbers of one of them begin with its name, as in `outer.set_mm`.
 """
 
+import contextlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar, Self
 
 import matplotlib as mpl
 import numpy as np
@@ -23,7 +28,7 @@ from scipy.interpolate import PchipInterpolator
 
 import coilset.open
 from coilset.api import Case, solve
-from coilset.model.base.columns import Columns, number, read_columns
+from coilset.model.base.columns import Columns, in_our_unit, number, read_columns, scaled
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.nest.file import NAMES, read_nest
@@ -34,6 +39,10 @@ from coilset.model.results.records.summary_entries import NUMBERS
 
 ROUNDING = 1e-6  # of a measured number or its error, below which a computed one is 0
 DRAWN = 121  # points of a phase's characteristic
+OFFSET, COMPLIANCE = "tester_offset_mm", "tester_compliance_mm_per_N"
+UNITS_OF = {name: "" for name in ("quantity", "value", "error", "phase", "turn", "angle", "spot")} | {
+    name: "mm" for name in ("travel_mm", "height_mm")
+}
 CASE, NEST, MEASURED, COLUMNS = "case.yaml", "nest.yaml", "measured.csv", "quantity, value, error"
 FORCE, STRESSES = "force_N", {f"stress_{name}_MPa": name for name in DIRECTIONS}
 OF_NEST = ("free_length_before_mm", "free_length_after_mm", "set_mm", "block_height_mm", "force_max_N")
@@ -109,10 +118,11 @@ def compare(folder: str | Path, results: str | Path, overwrite: bool = False) ->
     """
     folder, results = Path(folder), Path(results)
     nested = (folder / NEST).is_file()
-    table = _checked(read_columns(folder / MEASURED), nested)
+    table = _in_our_units(_checked(read_columns(folder / MEASURED).named(UNITS_OF), nested))
+    tester = _Tester.of(table)
     run = (_nest if nested else _case)(folder, results, overwrite)
     return Comparison(
-        [_compared(table, row, line, run) for line, row in table.rows],
+        [_compared(table, row, line, run, tester) for line, row in table.rows if row["quantity"] not in tester.ROWS],
         [
             np.array(
                 [way, *([read(one, phase) for one in way.tolist()] for read in (run.force_at, run.force_error_at))]
@@ -120,6 +130,40 @@ def compare(folder: str | Path, results: str | Path, overwrite: bool = False) ->
             for phase, way in run.ways
         ],
     )
+
+
+@dataclass(frozen=True)
+class _Tester:
+    """Of the tester: zero of its travel, mm, and compliance, mm/N, with their errors."""
+
+    ROWS: ClassVar[tuple[str, str]] = (OFFSET, COMPLIANCE)
+    offset: float = 0.0
+    offset_error: float = 0.0
+    compliance: float = 0.0
+    compliance_error: float = 0.0
+
+    @classmethod
+    def of(cls, table: Columns) -> Self:
+        """By the rows of a table.
+
+        Raises:
+            InputError: one that is there twice.
+        """
+        found: dict[str, list[float]] = {}
+        for line, row in table.rows:
+            if (name := row["quantity"]) in cls.ROWS:
+                if name in found:
+                    raise InputError(f"'{name}' is there twice; leave one out", f"line {line}", table.path)
+                found[name] = [number(row["value"]), number(row["error"])]
+        return cls(*found.get(OFFSET, [0.0, 0.0]), *found.get(COMPLIANCE, [0.0, 0.0]))
+
+    def gives_way(self, force: float) -> float:
+        """Its own travel under a force, mm."""
+        return self.compliance * force
+
+    def doubt(self, force: float) -> float:
+        """Error of the spring's travel by it, mm."""
+        return self.offset_error + self.compliance_error * abs(force)
 
 
 @dataclass(frozen=True)
@@ -186,6 +230,16 @@ def _drawn(travel: np.ndarray) -> np.ndarray:
     return np.linspace(travel.min(), travel.max(), DRAWN)
 
 
+def _in_our_units(table: Columns) -> Columns:
+    """The table with its columns' quantities, values and errors in our units."""
+    rows = []
+    for line, row in table.rows:
+        quantity, factor = in_our_unit(row["quantity"].strip())
+        numbers = {name: scaled(row[name], factor) for name in ("value", "error")}
+        rows.append((line, row | numbers | {"quantity": quantity}))
+    return replace(table, rows=tuple(rows))
+
+
 def _checked(table: Columns, nested: bool) -> Columns:
     for name in ("quantity", "value", "error"):
         if name not in table.names:
@@ -198,18 +252,22 @@ def _checked(table: Columns, nested: bool) -> Columns:
         raise InputError(
             f"is {errors[first]:g}; must be 0 or more", f"line {table.rows[first][0]}, column error", table.path
         )
-    known = [FORCE, *STRESSES, *NUMBERS]
+    known = [FORCE, OFFSET, COMPLIANCE, *STRESSES, *NUMBERS]
     if nested:
-        known = [FORCE, *OF_NEST, *(f"{name}.{one}" for name in NAMES for one in NUMBERS)]
+        known = [FORCE, OFFSET, COMPLIANCE, *OF_NEST, *(f"{name}.{one}" for name in NAMES for one in NUMBERS)]
     for line, row in table.rows:
-        quantity = row["quantity"].strip()
+        quantity, _ = in_our_unit(row["quantity"].strip())
         if quantity not in known:
             within = [one for one in known if one in quantity]  # as the rate in initial_rate_N_per_mm
             near = sorted(within, key=len, reverse=True) or get_close_matches(quantity, known, 1, 0.7)
             right = f"is {near[0]} meant?" if near else f"give a number of summary.json, {', '.join(known[:5])}"
             raise InputError(f"'{quantity}' is none that a run has; {right}", f"line {line}", table.path)
-        for needed in ["travel_mm"] * (quantity == FORCE) + ["turn"] * (quantity in STRESSES):
-            _given(table, row, line, needed)
+        places = [name for name in ("travel_mm", "height_mm") if not np.isnan(number(row.get(name)))]
+        if quantity == FORCE and len(places) != 1:
+            problem = f"'{FORCE}' needs one of travel_mm and height_mm as a number"
+            raise InputError(problem, f"line {line}", table.path)
+        if quantity in STRESSES:
+            _given(table, row, line, "turn")
     return table
 
 
@@ -226,22 +284,25 @@ def _given(table: Columns, row: dict[str, str], line: int, name: str, otherwise:
     return value
 
 
-def _compared(table: Columns, row: dict[str, str], line: int, run: _Run) -> Compared:
-    name = quantity = row["quantity"].strip()
+def _compared(table: Columns, row: dict[str, str], line: int, run: _Run, tester: _Tester) -> Compared:
+    name = quantity = row["quantity"]
 
     def given(column: str, *otherwise: float) -> float:
         return _given(table, row, line, column, *otherwise)
 
-    travel = given("travel_mm") if quantity == FORCE else float("nan")
-    error = run.error(quantity)
+    travel, error, measured_error = float("nan"), run.error(quantity), given("error")
     if quantity == FORCE:
-        phase = given("phase", 1.0)
+        phase, force = given("phase", 1.0), given("value")
+        column = "travel_mm" if np.isnan(number(row.get("height_mm"))) else "height_mm"
+        read, start = given(column), float(run.summary["free_length_before_mm"])
+        travel = (read - tester.offset if column == "travel_mm" else start - read) - tester.gives_way(force)
         try:
-            computed, error = (read(travel, int(phase) - 1) for read in (run.force_at, run.force_error_at))
-            name = f"{FORCE} at {travel:g} mm, phase {phase:g}"
+            computed, error = (at(travel, int(phase) - 1) for at in (run.force_at, run.force_error_at))
         except InputError:
-            problem = f"{travel:g} mm are not reached in phase {phase:g} of the load program, the first being 1"
-            raise InputError(problem, f"line {line}, column travel_mm", table.path) from None
+            problem = f"{travel:.6g} mm are not reached in phase {phase:g} of the load program, the first being 1"
+            raise InputError(problem, f"line {line}, column {column}", table.path) from None
+        measured_error += _of_travel(run, travel, int(phase) - 1, tester.doubt(force))
+        name = f"{FORCE} at {'a height of ' * (column == 'height_mm')}{read:g} mm, phase {phase:g}"
     elif quantity in STRESSES:
         turn, angle = given("turn"), given("angle", 0.0)
         seen = coilset.open(run.folder).xray(turn, angle, given("spot", 0.0))  # type: ignore[operator]
@@ -253,7 +314,16 @@ def _compared(table: Columns, row: dict[str, str], line: int, run: _Run) -> Comp
         if value is None:
             raise InputError(f"'{quantity}' is unknown in this run", f"line {line}", table.path)
         computed = float(value)
-    return Compared(name, given("value"), given("error"), computed, error, travel)
+    return Compared(name, given("value"), measured_error, computed, error, travel)
+
+
+def _of_travel(run: _Run, travel: float, phase: int, error: float) -> float:
+    """Error of a force by one of the travel, mm: by as much as the computed one changes, N."""
+    found = [0.0]
+    for side in (-error, error) if error else ():
+        with contextlib.suppress(InputError):  # beyond the end of the phase
+            found.append(abs(run.force_at(travel + side, phase) - run.force_at(travel, phase)))
+    return max(found)
 
 
 def figure(found: Comparison, name: str) -> Figure:

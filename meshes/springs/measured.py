@@ -128,7 +128,7 @@ def read_centre_line(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
 
 def _read_csv(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
     """Columns x, y, z and perhaps wire_diameter."""
-    table = read_columns(path)
+    table = read_columns(path).named(dict.fromkeys(("x", "y", "z", WIRE_DIAMETER), "mm"))
     if table.names not in (("x", "y", "z"), ("x", "y", "z", WIRE_DIAMETER)):
         problem = f"the columns must be x,y,z or x,y,z,{WIRE_DIAMETER}, not {','.join(table.names)!r}"
         raise InputError(problem, f"line {table.head}", path)

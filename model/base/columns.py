@@ -7,8 +7,8 @@ may have a decimal comma.
 import csv
 import math
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,15 @@ from coilset.model.base.entry import shortened
 from coilset.model.base.errors import InputError
 
 LONGEST_FILE = 100_000_000  # bytes
+UNITS = {
+    "mm": ("mm", 1.0),
+    "in": ("mm", 25.4),
+    "N": ("N", 1.0),
+    "kN": ("N", 1e3),
+    "kgf": ("N", 9.80665),
+    "lbf": ("N", 4.4482216152605),
+}
+"""Units of readings, with ours and by how much a number is to be multiplied."""
 FORMULA = re.compile(r"\s*[=+\-@].")
 DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+([eE][-+]?\d+)?\s*")
 
@@ -45,6 +54,27 @@ class Columns:
         """
         return np.array([self._number(row.get(name), name, line) for line, row in self.rows])
 
+    def named(self, units: Mapping[str, str]) -> "Columns":
+        """The columns by the names that a reader has for them, with numbers in its units.
+
+        Headings may be in capitals and have another unit, as `Force [kgf]` or `travel_in`.
+
+        Args:
+            units: of the columns that are wanted, by their names, such as `force` or `travel_mm`; empty without one.
+
+        Raises:
+            InputError: if two columns are the same.
+        """
+        found = [_name_and_factor(name, units) for name in self.names]
+        names = tuple(name for name, _ in found)
+        if twice := next((name for k, name in enumerate(names) if name and name in names[:k]), None):
+            raise InputError(f"is there twice; the columns are {shortened(', '.join(self.names))}", twice, self.path)
+        rows = tuple(
+            (line, {name: scaled(cell, factor) for (name, factor), cell in zip(found, row.values(), strict=False)})
+            for line, row in self.rows
+        )
+        return replace(self, names=names, rows=rows)
+
     def lacks(self, name: str, wanted: str) -> InputError:
         """The error for a column that is not there; `wanted` are those that a user gives, in words."""
         there = shortened(", ".join(self.names))
@@ -55,6 +85,32 @@ class Columns:
         if not math.isfinite(value):
             raise InputError(f"'{shortened(text or '')}' is not a number", f"line {line}, column {name}", self.path)
         return value
+
+
+def _name_and_factor(heading: str, units: Mapping[str, str]) -> tuple[str, float]:
+    """The name of a column by its heading, and by how much its numbers are to be multiplied."""
+    for name, unit in units.items():
+        if heading.lower() == name.lower():
+            return name, 1.0
+        for sign, (ours, factor) in UNITS.items():
+            stem = re.escape(name.removesuffix(f"_{unit}"))
+            if ours == unit and re.fullmatch(rf"{stem}[ _]*[\[(]?{sign}[\])]?", heading, re.IGNORECASE):
+                return name, factor
+    return heading, 1.0
+
+
+def scaled(cell: str, factor: float) -> str:
+    """A cell with its number times a factor; what is no number stays as it is."""
+    value = number(cell)
+    return cell if factor == 1.0 or not math.isfinite(value) else repr(factor * value)
+
+
+def in_our_unit(quantity: str) -> tuple[str, float]:
+    """A quantity such as `force_kgf` by the name that it has in our unit, `force_N`, and the factor of its numbers."""
+    for sign, (ours, factor) in UNITS.items():
+        if factor != 1.0 and quantity.endswith(f"_{sign}"):
+            return f"{quantity.removesuffix(sign)}{ours}", factor
+    return quantity, 1.0
 
 
 def number(text: str | None) -> float:

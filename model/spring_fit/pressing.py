@@ -15,6 +15,7 @@ from coilset.model.case.case import Case
 from coilset.model.case.targets import check_pressed, lowest_height
 
 WANTED = "travel and force, or height and force, or height and free_length"
+UNITS_OF = {"travel": "mm", "height": "mm", "free_length": "mm", "force": "N"}
 BACK = 0.02  # of the maximum travel: a return by less is scatter
 RELEASED = 0.03  # of the maximum force, below which a spring counts as released
 FEWEST = 8  # readings of a curve
@@ -72,6 +73,7 @@ def read_pressing(path: str | Path, case: Case) -> Pressing:
 
     Columns `travel` (mm) and `force` (N) in the order of the readings, or `height` (mm) in place of `travel`; or
     `height` and `free_length` (mm), one row for each press: how far it was pressed, and its length afterwards.
+    Headings may name another unit, as `force [kgf]`.
 
     Args:
         path: CSV file.
@@ -80,7 +82,7 @@ def read_pressing(path: str | Path, case: Case) -> Pressing:
     Raises:
         InputError: if the file cannot be read, a column or number is missing or wrong, or it shows no press.
     """
-    table = read_columns(path)
+    table = read_columns(path).named(UNITS_OF)
     spring = case.spring.build()
     check_pressed(spring)
     length = spring.free_length

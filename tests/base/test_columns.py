@@ -25,6 +25,36 @@ def test_comments_between_the_rows(tmp_path):
         read_columns(path).numbers("stress")
 
 
+@pytest.mark.parametrize(
+    ("heading", "factor"),
+    [
+        ("Force", 1.0),
+        ("FORCE [N]", 1.0),
+        ("force_kN", 1e3),
+        ("force (kgf)", 9.80665),
+        ("force_lbf", 0.45359237 * 9.80665),
+    ],
+)
+def test_headings_in_capitals_and_with_units(tmp_path, heading, factor):
+    path = tmp_path / "press.csv"
+    path.write_text(f"{heading};remark\n2,5;first\n", encoding="utf-8")
+    table = read_columns(path).named({"force": "N"})
+    assert table.names == ("force", "remark")
+    np.testing.assert_allclose(table.numbers("force"), [2.5 * factor], rtol=1e-12)
+    path.write_text(f"{heading};force\n2,5;2,5\n", encoding="utf-8")
+    with pytest.raises(InputError, match="force: is there twice; the columns are "):
+        read_columns(path).named({"force": "N"})
+
+
+def test_other_units_and_names_are_left(tmp_path):
+    path = tmp_path / "press.csv"
+    path.write_text("force [MPa],forces,travel_in,y\n1,2,x,4\n", encoding="utf-8")
+    table = read_columns(path).named({"force": "N", "travel_mm": "mm"})
+    assert table.names == ("force [MPa]", "forces", "travel_mm", "y")
+    with pytest.raises(InputError, match="line 2, column travel_mm: 'x' is not a number"):
+        table.numbers("travel_mm")
+
+
 def test_spaces_after_the_commas(tmp_path):
     path = tmp_path / "test.csv"
     path.write_text("strain, stress\n0.001, 205.5\n", encoding="utf-8")

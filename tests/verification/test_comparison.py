@@ -87,6 +87,59 @@ def test_a_folder(tmp_path):
         compare(tmp_path, tmp_path / "results", overwrite=True)
 
 
+def rows_of(folder, *rows, head="quantity;value;error;travel_mm;height_mm;phase"):
+    (folder / "case.yaml").write_text(yaml.safe_dump(CASE | {"material": "elastic"}))
+    (folder / "measured.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    return compare(folder, folder / "results", True).rows
+
+
+def test_a_force_at_a_height_and_in_other_units(tmp_path):
+    """A drawing and a tester state a force at a height: 25 mm are 10 mm of the 35; one kgf is 9.80665 N."""
+    at_travel, at_height, kgf, inches = rows_of(
+        tmp_path,
+        "force_N;400;4;10;;1",
+        "force_N;400;4;;25;1",
+        "force_kgf;40;0,4;;25;1",
+        "set_in;0,01;0,001;;;",
+    )
+    assert at_height.computed == pytest.approx(at_travel.computed, rel=1e-9)
+    assert at_height.quantity == "force_N at a height of 25 mm, phase 1"
+    assert (kgf.measured, kgf.error) == pytest.approx((40 * 9.80665, 0.4 * 9.80665))
+    assert (inches.quantity, inches.measured, inches.error) == ("set_mm", pytest.approx(0.254), pytest.approx(0.0254))
+    (heading,) = rows_of(tmp_path, "force_N;400;4;0,3937007874", head="Quantity;VALUE;Error;Travel [in]")
+    assert heading.computed == pytest.approx(at_travel.computed, rel=1e-9)
+
+
+def test_the_tester_has_an_offset_and_gives_way(tmp_path):
+    """An elastic spring of some 40 N/mm: 0.1 ± 0.05 mm and 1 ± 0.5 µm/N beside 400 N are 0.5 ± 0.25 mm of travel."""
+    plain, less = rows_of(tmp_path, "force_N;400;4;9,5;;1", "force_N;400;4;10;;1")
+    given = "tester_offset_mm;0,1;0,05;;;", "tester_compliance_mm_per_N;0,001;0,0005;;;"
+    (read,) = rows_of(tmp_path, *given, "force_N;400;4;10;;1")
+    assert read.computed == pytest.approx(plain.computed, rel=1e-9)
+    assert read.travel == pytest.approx(9.5)
+    slope = (less.computed - plain.computed) / 0.5
+    assert slope == pytest.approx(40.0, rel=0.1)
+    assert read.error == pytest.approx(4.0 + 0.25 * slope, rel=0.02)
+    (height,) = rows_of(tmp_path, *given, "force_N;400;4;;25;1")  # a height has its own zero
+    assert height.travel == pytest.approx(9.6)
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ("force_N;400;4;10;25;1", r"line 2: 'force_N' needs one of travel_mm and height_mm as a number"),
+        ("force_N;400;4;;;1", r"line 2: 'force_N' needs one of travel_mm and height_mm as a number"),
+        ("force_kgf;400;-4;10;;1", r"line 2, column error: is -4; must be 0 or more"),
+        ("force_N;400;4;;40;1", r"line 2, column height_mm: -5 mm are not reached in phase 1"),
+        ("tester_offset_mm;1;0;;;\ntester_offset_mm;1;0;;;", "line 3: .tester_offset_mm. is there twice; leave one"),
+        ("tester_offset;1;0;;;", r"line 2: 'tester_offset' is none that a run has; is tester_offset_mm meant\?"),
+    ],
+)
+def test_wrong_rows_are_refused(tmp_path, row, message):
+    with pytest.raises(InputError, match=message):
+        rows_of(tmp_path, row)
+
+
 def test_a_nest(tmp_path):
     """Forces add up; a number of one of the springs begins with its name."""
     for name, d, D, pitch in (("outer", 5.0, 40.0, 10.0), ("inner", 3.0, 24.0, 11.0)):
