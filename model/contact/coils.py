@@ -7,12 +7,11 @@ neither is the master.
 
 import numpy as np
 
-from coilset.meshes.boundary import Boundary
 from coilset.model.base.extremes import greatest, relative_motion
 from coilset.model.contact.base import Contact, Contribution, Memory, TrialPositions
 from coilset.model.contact.curve import Curve, WirePoints, curve_weights
 from coilset.model.contact.elements import PAIR, Bedding, Pressed, coil_elements
-from coilset.model.contact.gauge import extremes, gauge_table
+from coilset.model.contact.gauge import ROUND, extremes
 from coilset.model.contact.search import (
     PLACES,
     Locations,
@@ -43,7 +42,7 @@ class Coils(Contact):
         stations: stress-free positions, shape (n, 3), mm.
         bedding: force per length of wire and penetration, N/mm per mm.
         onset: distance over which contact sets in, mm.
-        section: of a wire that is not round, see `Spring`.
+        table: of the gauge of a wire that is not round.
 
     Attributes:
         multiplier_offset: by which each point is pressed beyond its penetration at each place, shape (m, PLACES), mm.
@@ -60,7 +59,7 @@ class Coils(Contact):
         stations: np.ndarray,
         bedding: float,
         onset: float,
-        section: Boundary | None = None,
+        table: np.ndarray = ROUND,
     ):
         self.points, self.onset, self._room = points, onset, max(FEW, len(points))
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
@@ -68,14 +67,14 @@ class Coils(Contact):
         self._y = np.column_stack([stations, points.line.radius])  # stations of the last search, with their radii
         line = points.line
         self._curve = Curve(self._y, line.turns, line.first, line.cubic)
-        across = np.zeros((len(points), 2)) if section is None else outwards(points, stations)
-        shape = across, gauge_table(section)
+        across = outwards(points, stations) if len(table) else np.zeros((len(points), 2))
+        shape = across, table
         self._points = Points(points.weights, points.stations, points.radius, points.turns, self.overlap, *shape)
         self._bedding = Bedding(points.weights, points.element, line.dofs, self.stiffness, onset, *shape)
-        farthest, steepest = extremes(shape[1])  # of a gap that changes faster than the distance
+        farthest, steepest = extremes(table)  # of a gap that changes faster than the distance
         self._widest, self._all_elements = float(points.line.radius.max()), np.array([[0, len(points.line.lengths)]])
         self._skin = SKIN * self._widest
-        if section is not None:
+        if len(table):
             self._widest *= farthest * (1.0 + 0.5 * SKIN)
         self.aside = STATIONS_ASIDE + POSTS_ASIDE * post_stride(self._widest, longest_element(self._y))
         pair, where, _ = self.near(TrialPositions(stations, np.empty(0)))

@@ -36,14 +36,39 @@ from coilset.model.contact.curve import (
     station_weight,
 )
 from coilset.model.contact.elements import PAIR, Bedding, Pressed, coil_elements, one_sided_at
-from coilset.model.contact.gauge import DIRECTIONS, gauge, gauge_table
+from coilset.model.contact.gauge import gauge
 from coilset.model.contact.seat import Seat
 from coilset.model.runtime.kernels import COMPILED, njit
 
+DIRECTIONS = 720  # of half a turn, between which κ is a cubic spline
+CORNERS = 16_384  # of the section's polygon from which κ is computed: κ″ of a circle is met within 1e-3
 SIMPSON = np.array([1.0, 4.0, 1.0]) / 6.0
 LEVEL_OF_HEIGHT = 1e-6  # of half the height: points of an outline at its top to within this make its flat
 NARROW = 1e-2  # of half the height: what is narrower is the top of a curve
 TURNED = 2 * PAIR  # displacements and rotations of the eight stations of a pair
+
+
+def gauge_table(section: Boundary) -> np.ndarray:
+    """The table of a section for `gauge`, shape (DIRECTIONS, 4).
+
+    Args:
+        section: y towards the coil's axis, z upwards, in half the wire's height.
+    """
+    from scipy.interpolate import CubicSpline  # takes a third of a second, and round wire needs none
+
+    corners = section.difference(CORNERS) * [-1.0, 1.0]
+    corners = corners[np.argsort(np.arctan2(corners[:, 1], corners[:, 0]))]
+    sides = np.roll(corners, -1, axis=0) - corners
+    α = np.pi * np.arange(DIRECTIONS + 1) / DIRECTIONS
+    ray, angle = np.stack([np.cos(α), np.sin(α)], axis=1), np.arctan2(corners[:, 1], corners[:, 0])
+    k = np.searchsorted(angle, α, side="right") - 1  # the side that the ray crosses
+    κ = 2.0 * _cross(ray, sides[k]) / _cross(corners[k], sides[k])
+    κ[-1] = κ[0]
+    return np.ascontiguousarray(CubicSpline(α, κ, bc_type="periodic").c.T)
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
 class Tilts:
@@ -134,7 +159,7 @@ class FacedCoils(Coils):
     def __init__(
         self, points: WirePoints, stations: np.ndarray, bedding: float, onset: float, section: Boundary
     ) -> None:
-        super().__init__(points, stations, bedding, onset, section)
+        super().__init__(points, stations, bedding, onset, gauge_table(section))
         self._tilts, arms = Tilts(points, stations), arms_table(section)
         self._arms, self._longest = arms, float(np.abs(arms).max() + 2.0) * float(points.line.radius.max())
         first = points.stations[:, 0]

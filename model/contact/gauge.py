@@ -8,45 +8,18 @@ A part of q along the wire counts as a distance does,
     N(q) = √(N₂² + t²),   N₂ = ρ κ(α),   ∇N₂ = κ e_ρ + κ′ e_α,   ∇²N₂ = (κ + κ″)/ρ e_α e_αᵀ.
 
 Of round wire κ = 1 and N = |q|. N is the distance from a flat face, too: there κ is a cosine. Sections keep their
-direction to the coil: outwards is that of the stress-free wire.
+direction to the coil: outwards is that of the stress-free wire. A table has the coefficients of κ(α), highest power
+first, on equal parts of half a turn, shape (parts, 4); faces.py makes it of a section.
 """
 
 import math
 
 import numpy as np
 
-from coilset.meshes.boundary import Boundary
 from coilset.model.runtime.kernels import njit
 
-DIRECTIONS = 720  # of half a turn, between which κ is a cubic spline
-CORNERS = 16_384  # of the section's polygon from which κ is computed: κ″ of a circle is met within 1e-3
 ROUND = np.empty((0, 4))  # the table of round wire
 Norm = tuple[float, float, float, float, float, float, float, float, float, float]
-
-
-def gauge_table(section: Boundary | None) -> np.ndarray:
-    """Coefficients of κ(α), highest power first, on equal parts of half a turn, shape (DIRECTIONS, 4).
-
-    Args:
-        section: y towards the coil's axis, z upwards, in half the wire's height; None of round wire.
-    """
-    if section is None:
-        return ROUND
-    from scipy.interpolate import CubicSpline  # takes a third of a second, and round wire needs none
-
-    corners = section.difference(CORNERS) * [-1.0, 1.0]
-    corners = corners[np.argsort(np.arctan2(corners[:, 1], corners[:, 0]))]
-    sides = np.roll(corners, -1, axis=0) - corners
-    α = np.pi * np.arange(DIRECTIONS + 1) / DIRECTIONS
-    ray, angle = np.stack([np.cos(α), np.sin(α)], axis=1), np.arctan2(corners[:, 1], corners[:, 0])
-    k = np.searchsorted(angle, α, side="right") - 1  # the side that the ray crosses
-    κ = 2.0 * _cross(ray, sides[k]) / _cross(corners[k], sides[k])
-    κ[-1] = κ[0]
-    return np.ascontiguousarray(CubicSpline(α, κ, bc_type="periodic").c.T)
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
 def extremes(table: np.ndarray) -> tuple[float, float]:

@@ -5,7 +5,8 @@ import pytest
 
 from coilset.meshes.boundary import Boundary
 from coilset.meshes.section_shapes import Egg, Oval, rectangle
-from coilset.model.contact.gauge import extremes, gauge, gauge_table
+from coilset.model.contact.faces import gauge_table
+from coilset.model.contact.gauge import extremes, gauge
 
 HEIGHT = 5.0
 OUT = 0.6, 0.8
