@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from mpi4py import MPI
@@ -20,6 +21,7 @@ from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.newton.contact_limit import ContactLimit
 from coilset.model.equilibrium.newton.methods import Method, rod_method
 from coilset.model.equilibrium.newton.newton import Newton
+from coilset.model.equilibrium.path.branch_switching import Branches
 from coilset.model.equilibrium.path.continuation import Continuation
 from coilset.model.equilibrium.path.stability import Stability
 from coilset.model.equilibrium.path.step_error import StepError
@@ -181,7 +183,9 @@ def build_continuation(
     if not newton.system.is_symmetric:
         steps = replace(steps, largest=min(steps.largest, steps.largest_with_friction))
     error = None if accuracy is None else StepError(control, accuracy, steps)
-    return Continuation(newton, steps, _deepest(case, least_radius), stability=stability, step_error=error)
+    return Continuation(
+        newton, steps, _deepest(case, least_radius), branches=partial(Branches, stability), step_error=error
+    )
 
 
 def build_setup(

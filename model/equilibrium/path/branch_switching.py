@@ -5,8 +5,11 @@ potential falls in each step, and the path ends only in a state of rest. docs/th
 """
 
 import logging
+import math
+import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from petsc4py import PETSc
@@ -14,7 +17,9 @@ from petsc4py import PETSc
 from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.equilibrium.newton.newton import Start
 from coilset.model.equilibrium.newton.outcome import Outcome
+from coilset.model.equilibrium.path.continuation import Continuation
 from coilset.model.equilibrium.path.stability import Stability, Weakest
+from coilset.model.equilibrium.path.step_sizes import Path
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Drag, Load
 
@@ -185,3 +190,124 @@ class Snap:
         released = descent.released + 0.5 * sum_of_ranks(self.system.comm, descent.drag_force @ way)
         # less than nothing: yielding took up more of the push than the way set free, and nothing drives the spring on
         return replace(outcome, left_branch=True, released=max(released, 0.0))
+
+
+class Branches:
+    """Judges the stability of a continuation's steps, and leaves a path that ends or becomes unstable.
+
+    Args:
+        stability: Stability.
+        along: the Continuation, to whose steps this belongs.
+    """
+
+    def __init__(self, stability: Stability, along: Continuation) -> None:
+        self.stability, self.system, self.control = stability, along.system, along.control
+        self._along: Continuation = weakref.proxy(along)  # that the end of an analysis frees it at once
+        self.begin()
+
+    def begin(self) -> None:
+        """A step begins."""
+        self._unstable: PETSc.Vec | None = None  # increments of an attempt that ended unstable
+        self._unstable_at = 0.0  # its size
+
+    def is_unstable(self, load: Load) -> bool:
+        """Whether the last equilibrium, which is evaluated, is less stable under another load; collective."""
+        return self.stability.weakest(load).negative > self._along.negative_pivots
+
+    def judged(self, outcome: Outcome, load: Load) -> Outcome:
+        """Reject a state that is less stable than the last equilibrium: another path continues from there; collective.
+
+        A stable state near it, on a branch that forks off before it, takes its place.
+        """
+        negative = self.stability.negative_pivots(load)
+        outcome = replace(outcome, negative_pivots=negative)
+        if negative <= self._along.negative_pivots:
+            return outcome
+        self._unstable = self.system.increments.copy()
+        beside = self._beside(load) if self._along.steps.position.has_left_branch else None
+        if beside is not None:
+            return beside
+        reason = f"the equilibrium is unstable: {negative} of the tangent's eigenvalues are negative"
+        return replace(outcome, converged=False, reason=reason)
+
+    def _beside(self, load: Load) -> Outcome | None:
+        """A stable state near the unstable one of the trial state, on a branch that forks off before it; collective.
+
+        It is the continuation of the path, as that of Shanley's column, if it is no farther off than the wire's radius.
+        """
+        assert self._unstable is not None
+        start = self._unstable.copy()
+        start.axpy(1.0, aside(self.stability, self.stability.weakest(load), load, self.control.branch_amplitude))
+        outcome = self._along.judged(self._along.solve_from(load, Start(start)))
+        if not outcome.converged:
+            return None
+        start.waxpy(-1.0, self._unstable, self.system.increments)
+        near = self.stability.greatest_displacement(start) <= self.system.line.rod.largest_radius
+        if not near or (negative := self.stability.negative_pivots(load)) > self._along.negative_pivots:
+            return None
+        return replace(outcome, negative_pivots=negative, left_branch=True)
+
+    def leave(self, path: Path, size: float, failed: Outcome) -> tuple[Outcome, float]:
+        """What comes after a step that has failed: a stable state beside the path, if that must be left; collective.
+
+        Returns:
+            Its Outcome, and the size of the step that leads there; else those that were given.
+        """
+        if failed.negative_pivots > self._along.negative_pivots:
+            self._unstable_at = size
+        if not self._ends_here(path, size, failed):
+            return failed, size
+        there = size if self._unstable is None else self._unstable_at
+        outcome = self._snap(path, self._along.steps.position.done + there)
+        self._unstable = None  # once a step
+        if not outcome.converged:
+            return failed, size
+        self._along.steps.begin_patience()
+        return outcome, there
+
+    def _ends_here(self, path: Path, size: float, outcome: Outcome) -> bool:
+        """Whether the path of a failed step ends, or must be left because it becomes unstable.
+
+        It ends where the step is as short as one may be, or where `patience` is used up.
+        """
+        ends = self._along.steps.is_last(size) or self._along.steps.stalls(path, self._along.in_vain)
+        if self._unstable is None and (not ends or outcome.refused):
+            return False
+        return ends or self._along.steps.is_near_unstable(size)
+
+    def _snap(self, path: Path, place: float) -> Outcome:
+        """Leave a path that ends or becomes unstable, and find a stable state.
+
+        If none is found everything is restored; an unstable state is then kept, with its negative pivots.
+
+        Args:
+            path: it.
+            place: on it, where to find that state, in regular steps.
+        """
+        there, load, along = self._unstable, partial(path.load, place), self._along
+        before, began = self.system.state.copy(), self.system.evaluations
+        outcome = Snap(self.stability, self.control, partial(self._snap_step, began)).go(load, there)
+        if outcome.converged:
+            free = f"set {outcome.released:.3g} N mm free" if outcome.released else "set no energy free: its path forks"
+            log.info("step %d: the spring left its path and %s", along.number + 1, free)
+            along.negative_pivots = 0
+            if along.step_error is not None:
+                along.step_error.restart()
+            return outcome
+        along.in_vain += self.system.evaluations - began
+        self.system.state.put_back(before)
+        self.system.restore()
+        log.info("step %d: no stable state beside the path was found", along.number + 1)
+        return outcome if there is None else self._keep_unstable(load(), there)
+
+    def _keep_unstable(self, load: Load, increments: PETSc.Vec) -> Outcome:
+        outcome = self._along.solve(load, (Start(increments),))
+        if outcome.converged:
+            outcome = replace(outcome, negative_pivots=self.stability.negative_pivots(load))
+        return self._along.conclude(load, outcome, 0.0)
+
+    def _snap_step(self, began: int, load: Load, start: Start) -> Outcome:
+        """One of a snap, which began after `began` evaluations and may take as many as may be in vain."""
+        if self.system.evaluations - began > self.control.patience:
+            return Outcome(False, "the program stalls", math.inf)
+        return self._along.judged(self._along.solve_from(load, start))

@@ -1,7 +1,7 @@
 """Continuation along a load path: predict, solve, accept or cut; one loop for rods, frames, probes and solids.
 
-A solve ends in one of two ways: its trial state becomes the equilibrium, or the last equilibrium is restored. The steps
-of a load program are committed here, the states of a snap-through in `branch_switching`.
+A solve ends in one of two ways: its trial state becomes the equilibrium, or the last equilibrium is restored. How wrong
+steps are, and what happens where a path becomes unstable, others say that are passed in.
 """
 
 import logging
@@ -9,18 +9,11 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from functools import partial
-from typing import TypeVar
-
-from petsc4py import PETSc
+from typing import Any, TypeVar
 
 from coilset.model.equilibrium.newton.newton import Newton, Start
 from coilset.model.equilibrium.newton.outcome import Estimate, Outcome
-from coilset.model.equilibrium.path.branch_switching import Snap, aside
 from coilset.model.equilibrium.path.guess import Guess
-from coilset.model.equilibrium.path.next_touch import CROSSING, NEAR, RESTART, SHORT, NextTouch
-from coilset.model.equilibrium.path.stability import Stability
-from coilset.model.equilibrium.path.step_error import StepError
 from coilset.model.equilibrium.path.step_sizes import Path, StepSizes, tolerates
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.load import Load
@@ -28,7 +21,6 @@ from coilset.model.equilibrium.system.load import Load
 log = logging.getLogger("coilset.steps")
 Reading = TypeVar("Reading")
 # what the state remembers of the last steps on a path: the guess, and the parabola of the finer path
-ELASTIC = 1e-6  # of what a step may bring in: the error of one in which no wire flows is rounding
 OF_PATH = "increments", "increments_before", "strain_increment"
 
 
@@ -39,7 +31,7 @@ class Continuation:
         penetration_limit: penetration beyond which a state is rejected, mm.
         starts: starting points for solving a load for a step of the given length, to be tried in order; default: the
             guess of the last steps, then the last equilibrium.
-        stability: Stability; None: stability is not checked.
+        branches: makes of this the Branches that judge stability and leave unstable paths; None: nothing does.
         step_error: StepError; None: the error is unknown, and automatic steps depend on convergence alone.
 
     Attributes:
@@ -48,7 +40,7 @@ class Continuation:
             nothing does.
         cause: what gives way at the last equilibrium, in words.
         steps: StepSizes, which also hold the position on the path.
-        number: of steps so far.
+        number: of steps so far; in_vain: evaluations that found no equilibrium.
         negative_pivots: of the tangent at the last equilibrium; 0 if it is stable.
     """
 
@@ -58,21 +50,19 @@ class Continuation:
         control: StepControl | None = None,
         penetration_limit: float = math.inf,
         starts: Callable[[Load, float], Iterable[Start]] | None = None,
-        stability: Stability | None = None,
-        step_error: StepError | None = None,
+        branches: Callable[["Continuation"], Any] | None = None,
+        step_error: Any = None,
     ) -> None:
         self.newton, self.system, self.control = newton, newton.system, control or StepControl()
         self.penetration_limit, self.starts = penetration_limit, starts
-        self.stability, self.negative_pivots, self.step_error = stability, 0, step_error
+        self.negative_pivots, self.step_error = 0, step_error
         self.refusal: Callable[[], str | None] = lambda: None
         self.overshoots: Callable[[], str | None] = lambda: None
         self.cause: Callable[[], str] = lambda: ""
-        self.steps, self.number = StepSizes(self.control), 0
+        self.steps, self.number, self.in_vain = StepSizes(self.control), 0, 0
         self.guess = Guess(self.system)
-        self.next_touch = NextTouch(self.system)
         self._spent: list[Outcome] = []  # all solves of the step in progress
-        self._unstable: PETSc.Vec | None = None  # increments of an attempt that ended unstable
-        self._in_vain = 0  # evaluations that found no equilibrium
+        self.branches = None if branches is None else branches(self)
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
@@ -83,13 +73,16 @@ class Continuation:
 
     def _attempt(self, load: Load, starts: Iterable[Start], size: float = 0.0, accurately: bool = False) -> Outcome:
         began = self.system.evaluations
-        solved = self._stable(self._solve(load, starts), load)
+        solved = self.solve(load, starts)
+        if solved.converged and self.branches is not None:
+            solved = self.branches.judged(solved, load)
         judged = self._short_enough(solved, size)
-        outcome = self._conclude(load, judged, size, accurately)
-        self._in_vain += 0 if outcome.converged or judged is not solved else self.system.evaluations - began
+        outcome = self.conclude(load, judged, size, accurately)
+        self.in_vain += 0 if outcome.converged or judged is not solved else self.system.evaluations - began
         return outcome
 
-    def _newton(self, load: Load, start: Start) -> Outcome:
+    def solve_from(self, load: Load, start: Start) -> Outcome:
+        """Solve a load from one start; collective."""
         self._spent.append(self.newton.solve(load, start))
         return self._spent[-1]
 
@@ -103,8 +96,8 @@ class Continuation:
             failed_solves=len(spent) - 1 + sum(solve.failed_solves for solve in spent),
         )
 
-    def _conclude(self, load: Load, outcome: Outcome, size: float, accurately: bool = False) -> Outcome:
-        """Commit or restore.
+    def conclude(self, load: Load, outcome: Outcome, size: float, accurately: bool = False) -> Outcome:
+        """Commit or restore; collective.
 
         Args:
             load: of the step.
@@ -156,7 +149,7 @@ class Continuation:
 
         The first step then starts in proportion to it.
         """
-        outcome = self._solve(load, (Start(),))
+        outcome = self.solve(load, (Start(),))
         reading = read()
         if outcome.converged:
             self.guess.probed = self.system.increments.copy(), load
@@ -175,19 +168,20 @@ class Continuation:
             self.system.restore()
             self.number, self.negative_pivots = number, pivots
 
-    def _solve(self, load: Load, starts: Iterable[Start]) -> Outcome:
+    def solve(self, load: Load, starts: Iterable[Start]) -> Outcome:
+        """Solve a load from several starts until one leads to a possible state; collective."""
         outcome = None
         for start in starts:
             if outcome is not None:
                 log.info("step %d: no equilibrium from the last step's direction (%s)", self.number + 1, outcome.reason)
-            outcome = self._newton(load, start)
+            outcome = self.solve_from(load, start)
             # stagnation recurs from other starts too, and partial steps lead away from the start: shorten the step
             if outcome.converged or outcome.stagnated or outcome.failed_solves:
                 break
         assert outcome is not None
-        return self._judged(outcome)
+        return self.judged(outcome)
 
-    def _judged(self, outcome: Outcome) -> Outcome:
+    def judged(self, outcome: Outcome) -> Outcome:
         """Reject an equilibrium in which bodies penetrate each other deeply."""
         if outcome.converged and (depth := self.system.max_penetration) > self.penetration_limit:
             limit = self.penetration_limit
@@ -216,89 +210,6 @@ class Continuation:
         reason = f"its error is estimated at {estimate.share:.3g} of what a step may have"
         return replace(outcome, converged=False, reason=reason, refused=True)
 
-    # ---- stability -------------------------------------------------------------------------------------------------
-
-    def _stable(self, outcome: Outcome, load: Load) -> Outcome:
-        """Reject a state that is less stable than the last equilibrium: another path continues from there."""
-        if not outcome.converged or self.stability is None:
-            return outcome
-        negative = self.stability.negative_pivots(load)
-        outcome = replace(outcome, negative_pivots=negative)
-        if negative <= self.negative_pivots:
-            return outcome
-        self._unstable = self.system.increments.copy()
-        beside = self._beside(load) if self.steps.position.has_left_branch else None
-        if beside is not None:
-            return beside
-        reason = f"the equilibrium is unstable: {negative} of the tangent's eigenvalues are negative"
-        return replace(outcome, converged=False, reason=reason)
-
-    def _beside(self, load: Load) -> Outcome | None:
-        """A stable state near the unstable one of the trial state, on a branch that forks off before it; collective.
-
-        It is the continuation of the path, as that of Shanley's column, if it is no farther off than the wire's radius.
-        """
-        assert self.stability is not None
-        assert self._unstable is not None
-        start = self._unstable.copy()
-        start.axpy(1.0, aside(self.stability, self.stability.weakest(load), load, self.control.branch_amplitude))
-        outcome = self._judged(self._newton(load, Start(start)))
-        if not outcome.converged:
-            return None
-        start.waxpy(-1.0, self._unstable, self.system.increments)
-        near = self.stability.greatest_displacement(start) <= self.system.line.rod.largest_radius
-        if not near or (negative := self.stability.negative_pivots(load)) > self.negative_pivots:
-            return None
-        return replace(outcome, negative_pivots=negative, left_branch=True)
-
-    def _ends_here(self, path: Path, size: float, outcome: Outcome) -> bool:
-        """Whether the path of a failed step ends, or must be left because it becomes unstable.
-
-        It ends where the step is as short as one may be, or where `patience` is used up.
-        """
-        ends = self.steps.is_last(size) or self.steps.stalls(path, self._in_vain)
-        if self.stability is None or (self._unstable is None and (not ends or outcome.refused)):
-            return False
-        return ends or self.steps.is_near_unstable(size)
-
-    def _snap(self, path: Path, place: float) -> Outcome:
-        """Leave a path that ends or becomes unstable, and find a stable state.
-
-        If none is found everything is restored; an unstable state is then kept, with its negative pivots.
-
-        Args:
-            path: it.
-            place: on it, where to find that state, in regular steps.
-        """
-        assert self.stability is not None
-        there, load = self._unstable, partial(path.load, place)
-        before, began = self.system.state.copy(), self.system.evaluations
-        outcome = Snap(self.stability, self.control, partial(self._snap_step, began)).go(load, there)
-        if outcome.converged:
-            free = f"set {outcome.released:.3g} N mm free" if outcome.released else "set no energy free: its path forks"
-            log.info("step %d: the spring left its path and %s", self.number + 1, free)
-            self.negative_pivots = 0
-            if self.step_error is not None:
-                self.step_error.restart()
-            return outcome
-        self._in_vain += self.system.evaluations - began
-        self.system.state.put_back(before)
-        self.system.restore()
-        log.info("step %d: no stable state beside the path was found", self.number + 1)
-        return outcome if there is None else self._keep_unstable(load(), there)
-
-    def _keep_unstable(self, load: Load, increments: PETSc.Vec) -> Outcome:
-        outcome = self._solve(load, (Start(increments),))
-        if outcome.converged and self.stability is not None:
-            outcome = replace(outcome, negative_pivots=self.stability.negative_pivots(load))
-        return self._conclude(load, outcome, 0.0)
-
-    def _snap_step(self, began: int, load: Load, start: Start) -> Outcome:
-        """One of a snap, which began after `began` evaluations and may take as many as may be in vain."""
-        if self.system.evaluations - began > self.control.patience:
-            return Outcome(False, "the program stalls", math.inf)
-        return self._judged(self._newton(load, start))
-
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
         """The guess of the last steps, of the first one of a rotation that by its rate; then the last equilibrium."""
         guess = self.guess.of(load, self.steps.position, size)
@@ -325,55 +236,34 @@ class Continuation:
                 see `StepControl.patience`; the state is that of the last converged step.
         """
         self._spent.clear()
-        self._unstable, unstable_at = None, 0.0
+        if self.branches is not None:
+            self.branches.begin()
         outcome: Outcome | None = None
         while True:
-            if self.steps.stalls(path, self._in_vain):
+            if self.steps.stalls(path, self.in_vain):
                 tried = f"more than {self.control.patience} states were tried in vain within a hundredth of the way"
                 raise path.failure(tried, "" if outcome is None else outcome.reason, self.cause())
             begun = self.steps.position
             wanted = self.steps.size(path)
-            size = self._to_next_touch(path, wanted) if path.automatic else wanted
+            size = wanted
+            if path.automatic and self.step_error is not None:
+                size = self.step_error.to_next_touch(self.guess, path, begun, wanted)
             load, length = path.load(begun.done + size), path.step_length(begun.done, size)
             if path.moment is not None:
                 self.system.pass_time(path.moment(begun.done + 0.5 * size), path.moment(begun.done + size))
             outcome = self._attempt(load, (self.starts or self.from_last_step)(load, length), length, path.automatic)
-            if outcome.negative_pivots > self.negative_pivots:
-                unstable_at = size
             if path.gives_way and not (outcome.converged or outcome.refused):
                 raise path.failure(outcome.reason)
             # no snaps while time passes: a path that ends there ends the run
-            if not outcome.converged and path.moment is None and self._ends_here(path, size, outcome):
-                there = size if self._unstable is None else unstable_at
-                beside = self._snap(path, begun.done + there)
-                if beside.converged:
-                    outcome, size = beside, there
-                    self.steps.begin_patience()
-                self._unstable = None  # once a step
+            if not outcome.converged and path.moment is None and self.branches is not None:
+                outcome, size = self.branches.leave(path, size, outcome)
             if outcome.converged:
                 self.number += 1
                 self.steps.accept(path, outcome, size)
                 if size < wanted:
-                    self.steps.resize(max(self.steps.position.size, min(RESTART, wanted)))
+                    self.steps.restart(wanted)
                 return self._charged(outcome), begun.cuts
             self._cut(path, outcome, size)
-
-    def _to_next_touch(self, path: Path, size: float) -> float:
-        """Size of a step that ends just before something touches for the first time, or that crosses that; collective.
-
-        It is where the guess shows it. Rotations are no straight path for a guess, and elastic wire needs no such step.
-        """
-        position = self.steps.position
-        if not position.share > ELASTIC:
-            return size
-        guess = self.guess.along_path(path.load(position.done + size), position, path.step_length(position.done, size))
-        if guess is None or self.guess.carried:
-            return size
-        part = self.next_touch.part(guess)
-        if part == 1.0:
-            return size
-        short = SHORT * part * size
-        return short if short > NEAR else min(size, CROSSING)
 
     def _cut(self, path: Path, outcome: Outcome, size: float) -> None:
         if self.steps.cut(outcome, size):

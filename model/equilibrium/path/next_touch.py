@@ -5,7 +5,7 @@ that flowed is suddenly unloaded. A step across it is wrong by the force that th
 way to the touch, and its equilibrium is far from any guess. But the guess of a step shows at which part of it a gap
 closes. The step is made SHORT of that; from there the guess is so much better that a second, short one ends within
 NEAR of the touch, and a third one of size CROSSING goes across it. The rates at its end are those with the contact
-closed: the next step may be RESTART long, and its guess shows what touches next.
+closed: the next step may be long again, and its guess shows what touches next.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from coilset.model.equilibrium.system.system import System
 
 DEEP = 1e-3  # wire diameters: what the guess closes by less is no first touch, but a contact that spreads
 SHORT, EXACT = 0.98, 0.002  # of the part; how exactly it is found
-NEAR, CROSSING, RESTART = 2.0**-9, 2.0**-6, 0.25  # sizes, in regular steps
+NEAR, CROSSING = 2.0**-9, 2.0**-6  # sizes, in regular steps
 FIRST = 2.0**-12  # a touch nearer to the start is at it
 MARGIN = 0.05  # distance that a trial keeps from both ends of the bracket, as a share of its width
 

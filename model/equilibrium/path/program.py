@@ -250,11 +250,10 @@ class LoadProgram:
     def _rises_first(self, stage: Stage) -> bool:
         """Whether the spring would be unstable where it is, were its force prescribed; collective."""
         control, continuation = self.control, self.continuation
-        if continuation.stability is None:
+        if continuation.branches is None:
             return False
         continuation.system.restore()
-        weakest = continuation.stability.weakest(self._load(stage, control.force, 0.0))
-        return weakest.negative > continuation.negative_pivots
+        return bool(continuation.branches.is_unstable(self._load(stage, control.force, 0.0)))
 
     def _open(self, reason: str) -> None:
         """Open the heads from here on."""

@@ -15,6 +15,9 @@ from petsc4py import PETSc
 
 from coilset.model.body.state import Where
 from coilset.model.equilibrium.newton.outcome import Estimate
+from coilset.model.equilibrium.path.guess import Guess
+from coilset.model.equilibrium.path.next_touch import CROSSING, NEAR, SHORT, NextTouch
+from coilset.model.equilibrium.path.step_sizes import Path, Position
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.system.heads import Heads
 from coilset.model.rod.finer_path import FinerPath
@@ -30,6 +33,7 @@ GREATEST, FIRST, CLOSED = range(3)
 # A spring is held where its height, over its free length, or its force, over the maximum, changes by no more; it
 # is held to the accuracy of the equilibrium only.
 STILL, STILL_FORCE = 1e-12, 1e-6
+ELASTIC = 1e-6  # of what a step may bring in: the error of one in which no wire flows is rounding
 ROUNDING = 1e-12  # of E A: forces up to there are none, as those of a free spring that is heated
 
 
@@ -44,6 +48,7 @@ class StepError:
     def __init__(self, control: Heads, accuracy: float, steps: StepControl) -> None:
         self.control, self.accuracy, self.steps, system = control, accuracy, steps, control.system
         self._rod = rod = system.line.rod
+        self._touch = NextTouch(system)
         self._finer = FinerPath(rod.sections, rod.state, rod.points.bearing, rod.element, rod.comm)
         self._memory = system.state.add("step_error", np.zeros(3), Where.SHARED)
         system.state.add("rates", np.zeros(system.layout.size_local), Where.UNKNOWN)  # at the end of the last step
@@ -124,6 +129,27 @@ class StepError:
         stress = float(surface.equivalent(rod.surface_state, rod.sections.components).max(initial=0.0))
         resolves = rod.in_time.is_resolved((end.equilibrium, middle.trial, end.trial), stress, fall)
         return comm.allreduce(resolves, MPI.LAND) if comm.size > 1 else bool(resolves)
+
+    def to_next_touch(self, guess: Guess, path: Path, position: Position, size: float) -> float:
+        """Size of a step that ends just before something touches for the first time, or that crosses that; collective.
+
+        It is where the guess shows it. Rotations are no straight path for a guess, and elastic wire needs no such step.
+
+        Args:
+            guess: of the last steps.
+            path, position: where it begins.
+            size: of the step if nothing touches, in regular steps.
+        """
+        if not position.share > ELASTIC:
+            return size
+        along = guess.along_path(path.load(position.done + size), position, path.step_length(position.done, size))
+        if along is None or guess.carried:
+            return size
+        part = self._touch.part(along)
+        if part == 1.0:
+            return size
+        short = SHORT * part * size
+        return short if short > NEAR else min(size, CROSSING)
 
     def accept(self) -> None:
         """Go on from the end of the step that was judged, which is committed now."""

@@ -22,6 +22,7 @@ EASY, HARD = 5, 10  # iterations up to which the next automatic step becomes lon
 SHRINKAGE = 0.7
 TOLERATED_SHARE = 2.0  # of the error that a step may have, up to which it is still kept; the next one is shorter
 FINEST = 2.0**-6  # size below which an automatic step is no longer shortened because of its error
+RESTART = 0.25  # size up to which the step may be after one that was shortened to end at a touch, or to cross it
 ADVANCE = 1e-2  # of a path, which must be made before `patience` evaluations are in vain
 
 
@@ -118,6 +119,10 @@ class StepSizes:
     def resize(self, size: float) -> None:
         """Make the next step as large as `size` regular steps."""
         self.position = replace(self.position, size=size)
+
+    def restart(self, wanted: float) -> None:
+        """Go on after a step that a touch has made shorter than `wanted`."""
+        self.resize(max(self.position.size, min(RESTART, wanted)))
 
     def size(self, path: Path) -> float:
         """Size of the step to try now, in regular steps."""
