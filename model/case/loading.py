@@ -1,5 +1,7 @@
 """What a load program does to its spring: presses, pulls or turns it."""
 
+from typing import Literal
+
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case.case import Case
 from coilset.model.case.phases import heads_of
@@ -14,7 +16,9 @@ def _loads(case: Case, spring: Spring) -> list[float]:
 
 
 def pulls(case: Case, spring: Spring) -> bool:
-    """Whether a load program pulls the spring and never compresses it."""
+    """Whether a load program pulls the spring and never compresses it; without one, whether its drawing shows so."""
+    if not case.loading:
+        return _has(spring, "hooks") or (spring.wound_solid and not _has(spring, "arms"))
     loads = _loads(case, spring)
     return min(loads, default=0.0) < 0.0 and max(loads) <= 0.0
 
@@ -26,8 +30,15 @@ def is_pressed(case: Case, spring: Spring) -> bool:
 
 
 def is_turned(case: Case, spring: Spring) -> bool:
-    """Whether a load program turns the spring, by a rotation or a torque, and neither presses nor pulls it."""
+    """Whether a load program turns the spring, by a rotation or a torque, and neither presses nor pulls it; without
+    one, whether it has arms."""
+    if not case.loading:
+        return _has(spring, "arms")
     return bool(rotations(case, spring) or torques(case, spring))
+
+
+def _has(spring: Spring, name: Literal["hooks", "arms"]) -> bool:
+    return any(tail is not None and tail.pulled == (name == "hooks") for tail in spring.tails)
 
 
 def rotations(case: Case, spring: Spring) -> tuple[float, ...]:

@@ -68,6 +68,7 @@ def case_sheet(
         yield_stress=law.first_yield(case.temperature),
         strength=law.data.tensile_strength if isinstance(case.material, str) else None,
         pulled=pulled,
+        turned=is_turned(case, spring),
         turns_to=rotations(case, spring),
         tension=getattr(case.spring, "initial_tension", None) or 0.0,
         beyond=tails_compliance(spring, E, G, is_turned(case, spring)),

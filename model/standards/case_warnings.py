@@ -174,7 +174,7 @@ def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
 def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:
     """Warnings about the working lengths of a sheet; `to_block` has the block length, mm, if the spring is compressed
     to it, which is checked for stress only."""
-    if made.pulled or made.turns_to:  # gaps and the stress allowed at block are of compression springs
+    if made.pulled or made.turned:  # gaps and the stress allowed at block are of compression springs
         found = strength_warnings(made)
     else:
         found = gap_warnings(made)

@@ -43,7 +43,7 @@ def sections(sheet: Sheet) -> list[tuple[str, list[Row]]]:
         endurance = list(_endurance(sheet))
         pulled = [dimensions, ("Extension spring, EN 13906-2", list(_pulled(sheet)))]
         return [*pulled, ("Endurance", endurance)] if endurance else pulled
-    if sheet.turns_to:
+    if sheet.turned:
         return [dimensions, ("Torsion spring, EN 13906-3", list(_turned(sheet)))]
     parts = {
         "Dimensions": _dimensions,
@@ -79,7 +79,7 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, f"{tails}the helix is longer by 1/cos α")
     formula = "ρ A l" if s.wire else "ρ π d² l/4"
     yield Row("mass m", 1e3 * en13906.mass(ρ, s.of_mass, nominal), "g", formula, DERIVED, mass, "as the wire length")
-    if sheet.pulled or sheet.turns_to or s.wire:  # the formula of the growth is for round wire
+    if sheet.pulled or sheet.turned or s.wire:  # the formula of the growth is for round wire
         return
     growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
     grown = sheet.found.growth if sheet.found and sheet.was_at_block else None
@@ -180,7 +180,7 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
     elif sheet.beyond:
         yield Row("  with clamped arms", rate, "N mm/°", "1/(1/R + ∫ ds/(E I, G J))", DERIVED, turned, why)
     yield Row("stress factor q", q, "", "(4 w² − w − 1)/(4 w (w − 1))", DERIVED)
-    most = max(sheet.turns_to, key=abs)
+    most = max(sheet.turns_to, key=abs, default=0.0)
     for turn in sheet.turns_to:
         torque, largest = rate * abs(turn), turn == most
         σ, flow = sheet.bending_stress(turn), "when last passed: less where the wire yielded, more on an arbor"

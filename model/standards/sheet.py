@@ -36,7 +36,8 @@ class Sheet:
         yield_stress: of the run's material in tension, MPa; None if it is unknown or the material is elastic.
         strength: tensile strength Rm that the material's file gives, MPa; None if it gives none.
         pulled: whether the load program pulls the spring, see EN 13906-2.
-        turns_to: rotations that the load program goes to, degrees, positive in the winding direction, see EN 13906-3.
+        turned: whether it turns the spring, see EN 13906-3.
+        turns_to: rotations that the load program goes to, degrees, positive in the winding direction.
         tension: initial tension F0 of coils wound onto each other, N.
         beyond: compliance of hooks, mm/N, or of arms, rad/(N mm).
         hook_stress: greatest stress along the wire of the hooks for 1 N, MPa; 0 without hooks.
@@ -57,6 +58,7 @@ class Sheet:
     yield_stress: float | None = None
     strength: float | None = None
     pulled: bool = False
+    turned: bool = False
     turns_to: Sequence[float] = ()
     tension: float = 0.0
     beyond: float = 0.0

@@ -216,7 +216,7 @@ def _warnings(case: Case, spring: Spring, made: Sheet) -> list[Warning]:
     own = spring_warnings(spring, made.elastic, is_pressed(case, spring), seating_of(case))
     warnings = [*warm, *own, *sheet_warnings(made, [cylinder.solid])]
     set_mm = made.at_run("set_mm")
-    if set_mm and made.was_at_block and not (made.pulled or made.turns_to):  # any other run is no presetting
+    if set_mm and made.was_at_block and not (made.pulled or made.turned):  # any other run is no presetting
         warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])
     return warnings
 

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError
-from coilset.model.case import check
+from coilset.model.case import UnloadedCase, check
+from coilset.model.report.document.diagrams import diagrams
 from coilset.model.run.load_history import LoadHistory
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_sheet import case_sheet
@@ -62,6 +64,22 @@ TURNED = {
 def made(entries, lengths=()):
     case = check(entries)
     return case_sheet(case, case.spring.build(), None, lengths=lengths)
+
+
+DOOR = {"wire_diameter": 6.35, "inner_diameter": 50.8, "turns": 20, "pitch": 6.35}
+
+
+@pytest.mark.parametrize(
+    ("entries", "part"),
+    [(PULLED, "13906-2"), (TURNED, "13906-3"), (PULLED | {"spring": DOOR}, "13906-2")],
+    ids=["hooks", "arms", "coils that lie on each other"],
+)
+def test_without_a_load_program_the_drawing_shows_what_a_spring_is_for(entries, part):
+    left = {name: value for name, value in entries.items() if name not in ("loading", "working")}
+    case = check_entries(left, UnloadedCase)
+    sheet = case_sheet(case, case.spring.build(), None)
+    assert part in sections(sheet)[1][0]
+    assert [panel.name for panel in diagrams(sheet, {})] == ([] if sheet.turned else ["force"])
 
 
 def test_a_torque_is_a_rotation_by_the_rate():

@@ -89,11 +89,11 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
     """
     limits = {limit.name: limit for limit in case_limits(case, spring, sheet.elastic.shear_modulus)}
     head = [(words(name), value) for name, value in (case.sheet or SheetSpec()).model_dump().items()]
-    norms = "EN 13906-2" if sheet.pulled else "EN 13906-3" if sheet.turns_to else "EN 13906-1, EN 15800"
+    norms = "EN 13906-2" if sheet.pulled else "EN 13906-3" if sheet.turned else "EN 13906-1, EN 15800"
     shown = _shown(sheet, spring)
     without = f"Calculated by the formulas of {norms}, before a run"
     basis = f"Results of the run {run}, beside the formulas of {norms}" if run else without
-    kind = "Extension spring" if sheet.pulled else "Torsion spring" if sheet.turns_to else "Compression spring"
+    kind = "Extension spring" if sheet.pulled else "Torsion spring" if sheet.turned else "Compression spring"
     parts = sections(sheet)
     missing = [
         f"{title if row.label.strip() in ALL else row.label.strip()}: {row.why}"
@@ -136,7 +136,7 @@ def _design(sheet: Sheet, spring: Spring, words: Words) -> Iterator[Line]:
     if sheet.wire:
         yield Line(words("wire"), sheet.wire.name)
     yield Line(words("coiling direction"), words("right" if spring.hand > 0 else "left"))
-    if not (sheet.pulled or sheet.turns_to):
+    if not (sheet.pulled or sheet.turned):
         yield Line(words("ends"), words(s.ends))
     yield Line(words("total turns nt"), words.number(s.turns))
     yield Line(words("outer diameter De"), words.number(s.D + width), unit="mm")
@@ -208,7 +208,7 @@ def _view(sheet: Sheet, spring: Spring, limits: Mapping[str, Limit], words: Word
     """The spring with its dimensions and their tolerances."""
     s, width = sheet.spring, spring.width * sheet.spring.d
     free = _free_length(sheet)
-    compressed = not (sheet.pulled or sheet.turns_to)  # EN 15800 is for compression springs
+    compressed = not (sheet.pulled or sheet.turned)  # EN 15800 is for compression springs
     covered = compressed and s.wire is None and en15800.outside(s.d, s.D, s.n, s.length) is None
     shear = sheet.elastic.shear_modulus
     given = en15800.tolerances(sheet.grade, shear, s.d, s.D, s.n, s.length) if covered else None

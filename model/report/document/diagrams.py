@@ -18,8 +18,8 @@ MARK: Trace = {"size": 8, "symbol": "square", "color": "#009e73"}
 
 def diagrams(sheet: Sheet, limits: Mapping[str, Limit]) -> Iterator[Panel]:
     """Those of a sheet; `limits` by the names of their results."""
-    if sheet.turns_to:
-        if not sheet.spring.wire:  # EN 13906-3 is for round wire
+    if sheet.turned:
+        if sheet.turns_to and not sheet.spring.wire:  # EN 13906-3 is for round wire
             yield _torque(sheet, limits)
         return
     yield _force(sheet, limits)
