@@ -53,6 +53,7 @@ class Lines:
         self._turned = False  # whether the load program turns a head
         self._began, self._from = 0.0, -1.0  # when and where the first step ended; below 0 before
         self._start = self._said = 0.0  # when the first run began, and the last row was printed
+        self._unsaid: Step | None = None  # the last step, if it has no row
 
     def say(self, text: str) -> None:
         """A line about the run."""
@@ -79,7 +80,7 @@ class Lines:
 
     def again(self, analysis: Analysis, finer: str) -> None:
         """A finer run of the same case begins or continues; `finer` names what is finer."""
-        self.analysis, self._from = analysis, -1.0
+        self.analysis, self._from, self._unsaid = analysis, -1.0, None
         self.say(f"the estimated error exceeds the accuracy: again with {finer}")
         self._head()
 
@@ -92,10 +93,13 @@ class Lines:
 
     def step(self, step: Step) -> None:
         """A step has been found."""
-        waiting = self._left(step)
-        if not (self.every or step.progress >= 1.0 or step.left_branch or self._is_due()):
-            return
-        self._said = time.monotonic()
+        waiting, self._unsaid = self._left(step), step
+        if self.every or step.progress >= 1.0 or step.left_branch or self._is_due():
+            self._print(step, waiting)
+
+    def _print(self, step: Step, waiting: str = "") -> None:
+        """The row of a step, with the time that is left."""
+        self._said, self._unsaid = time.monotonic(), None
         cuts, left = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else "", ""
         if step.left_branch:
             left = "  snapped" if step.released_energy_Nmm else "  left its path"
@@ -127,7 +131,9 @@ class Lines:
         return contextlib.nullcontext()
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
-        """Print the results."""
+        """Print the results, after the last step of a run that ended early."""
+        if self._unsaid is not None:
+            self._print(self._unsaid)
         rows = pressed_rows(summary) if summary["turn_max_deg"] is None else _turned(summary)
         self.console.pairs(rows, bold="set")
         if summary["working"]:
@@ -346,7 +352,9 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if held_matters(summary):
         moment = quantity(summary["end_moment_held_Nmm"], "N mm", 0)
         yield "  before its ends are let go", f"{quantity(summary['set_held_mm'], 'mm', 4)}, held with {moment}"
-    yield "initial rate", within(summary["rate_N_per_mm"], summary["estimated_rate_error_N_per_mm"], "N/mm", 4)
+    closed = summary["initial_tension_N"] is not None
+    rate = within(summary["rate_N_per_mm"], summary["estimated_rate_error_N_per_mm"], "N/mm", 4)
+    yield f"initial rate{', coils closed' * closed}", rate
     if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
         finished = summary["rate_30_70_after_N_per_mm"]
         name = "rate, 30 to 70 % of travel to block" if finished is None else "rate of the finished spring, 30 to 70 %"
@@ -363,7 +371,8 @@ def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2)
     for stay in summary["load_losses"]:
         yield f"load lost in time at {stay['height_mm']:.5g} mm", lost(stay)
-    yield "block height", quantity(summary["block_height_mm"], "mm")
+    if summary["force_max_N"] >= 0.0:
+        yield "block height", quantity(summary["block_height_mm"], "mm")
     yield "maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2)
     error, turn = summary["estimated_residual_shear_inside_error_MPa"], summary["residual_shear_inside_turn"]
     inside = within(summary["residual_shear_inside_MPa"], error, "MPa", 2)

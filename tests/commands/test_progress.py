@@ -53,6 +53,7 @@ def test_the_rate_is_that_on_the_way_to_block(tmp_path, capsys, travel, told):
     printed = capsys.readouterr().out
     assert bool(re.search(f"rate, 30 to 70 % of travel to block +{told} ", printed)) == bool(told)
     assert "none" not in printed.partition("rate, 30")[2].partition("maximum force")[0]
+    assert ("block height" in printed) == bool(told)
 
 
 ROW = re.compile(r" +(\d+) +\d+\.\d{4} +-?\d+\.\d{3} +\d+ ")
@@ -72,6 +73,21 @@ def test_a_phase_has_a_row_and_more_as_time_passes(said, monkeypatch, seconds, r
     monkeypatch.setattr("coilset.scripts.terminal.progress.time.monotonic", lambda: times["now"])
     lines, _ = said()
     assert [int(found[1]) for line in lines if (found := ROW.match(line))] == rows
+
+
+def test_a_run_that_ends_early_shows_its_last_step(said, monkeypatch, capsys):
+    step = Lines.step
+
+    def ends(self, found):
+        step(self, found)
+        if found.number == 2:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Lines, "step", ends)
+    monkeypatch.setattr("coilset.scripts.terminal.progress.OFTEN", 1e6)
+    with pytest.raises(KeyboardInterrupt):
+        said()
+    assert [int(found[1]) for line in capsys.readouterr().out.splitlines() if (found := ROW.match(line))] == [2]
 
 
 def test_json_has_the_rows_of_the_history_and_the_summary(said):
