@@ -97,8 +97,11 @@ class Interrupt:
         signal.setitimer(signal.ITIMER_REAL, AGAIN)
 
     def __enter__(self) -> "Interrupt":
+        postponed = signal.setitimer(signal.ITIMER_REAL, 0.0)[0] > 0.0  # one that came during an import
         self.before = {number: signal.signal(number, self._note) for number in STOPS}
         self.before[signal.SIGALRM] = signal.signal(signal.SIGALRM, self._leave_step)
+        if postponed:
+            self._note(signal.SIGINT, None)
         return self
 
     def __exit__(self, *_: object) -> None:

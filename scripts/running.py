@@ -11,7 +11,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from coilset.model.base.errors import CoilsetError, InputError, printable
-from coilset.model.runtime.processes import first_rank
+from coilset.model.runtime.processes import first_rank, number_of_ranks
 from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL, STOPPED, Output, output_closed
 from coilset.scripts.main import app
 from coilset.scripts.startup import typer
@@ -163,6 +163,7 @@ def _interrupted() -> int:
     """Report an interruption in one line; returns its exit code.
 
     A rank that waits for another one inside MPI receives no signal: if it does not come within SOON_TOGETHER, all end.
+    Before MPI runs, a rank leaves at once: a thread may just be starting it, and its end would wait for the others.
     """
     closed = output_closed()  # like any program whose reader has gone
     status = 128 + signal.SIGPIPE if closed else INTERRUPTED
@@ -172,6 +173,9 @@ def _interrupted() -> int:
         for number in (signal.SIGINT, signal.SIGUSR1, signal.SIGALRM):
             signal.signal(number, signal.SIG_IGN)  # the end is near
         _leave_together(status, SOON_TOGETHER)
+    elif number_of_ranks() > 1:
+        sys.stderr.flush()
+        os._exit(status)
     return status
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -10,6 +11,9 @@ import uuid
 from pathlib import Path
 
 import pytest
+from mpi4py import MPI
+
+from coilset.scripts.interrupt import Interrupt
 
 LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
 CACHE = Path(os.environ.get("COILSET_CACHE", Path.home() / ".cache" / "coilset"))
@@ -61,6 +65,10 @@ class Running:
     def wait_for(self, words):
         """Until it has said these words."""
         self.until(lambda: words in self.said.read_text())
+
+    def wait_for_a_step(self):
+        """Until it has printed the row of one."""
+        self.until(lambda: re.search(r"^ +\d+ +\d+\.\d{4} ", self.said.read_text(), re.MULTILINE))
 
     def until(self, condition):
         end = time.monotonic() + PATIENCE
@@ -115,7 +123,7 @@ def test_ending_the_outer_process_ends_all(start, example, ranks, number):
     """With results and exit code 130, but for SIGKILL: after SIGINT the step is finished, after SIGTERM it is left."""
     command = coilset("-n", ranks, "solve", example, "--out", "out", *LONG)
     running = start(command, **PRIVATE)
-    running.wait_for("\n    3 ")
+    running.wait_for_a_step()
     assert len(running.alive()) > 2 * ranks
     os.kill(running.process.pid, number)
     running.process.wait(PATIENCE)
@@ -159,7 +167,7 @@ def test_tests_end_with_the_command_that_runs_them(start, tmp_path, number):
 @pytest.mark.parametrize(("ranks", "number"), [(1, signal.SIGINT), (1, signal.SIGTERM), (2, signal.SIGINT)])
 def test_stopped_in_an_environment_without_a_root(start, example, ranks, number):
     running = start(coilset("-n", ranks, "solve", example, "--out", "out", *LONG))
-    running.wait_for("\n    3 ")
+    running.wait_for_a_step()
     os.kill(running.process.pid, number)
     running.process.wait(PATIENCE)
     judge_gentle_end(running, number)
@@ -287,3 +295,21 @@ def test_ctrl_c_at_the_prompt_ends_the_run(start, example):
     os.kill(running.process.pid, signal.SIGINT)
     assert running.process.wait(PATIENCE) == 130
     assert json.loads((running.folder / "out" / "summary.json").read_text())["steps"] == 1
+
+
+def test_an_interrupt_that_was_put_off_is_noted_by_the_solve():
+    """It came during an import, just before the solve: its alarm is not taken for that of a step to be left."""
+    said = []
+    before = signal.signal(signal.SIGALRM, signal.SIG_IGN)
+    signal.setitimer(signal.ITIMER_REAL, 60.0)
+    try:
+        with Interrupt(MPI.COMM_SELF, said.append) as interrupt:
+            assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+            assert interrupt.stopped()
+            assert not interrupt.hurries
+        with Interrupt(MPI.COMM_SELF, said.append) as interrupt:
+            assert not interrupt.stopped()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert said == ["finishing this step; once more ends at once"]
