@@ -17,6 +17,7 @@ from coilset.meshes.springs.shapes import Table
 from coilset.model.base.errors import SolveError
 from coilset.model.case import Case
 from coilset.model.contact.build import bedding_of
+from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import RunErrors
 from coilset.model.results.records.releases import is_turned
 from coilset.model.results.records.warnings import allowed_errors
@@ -33,6 +34,7 @@ FINEST = {"steps": 30.0, "mesh": 4.0, "section": 3.0, "contact": 30.0}
 COSTS = {"steps": 1.0 / 3.0, "mesh": 1.0, "section": 2.0, "contact": 0.1}
 """Powers of these factors with which the time of a run grows."""
 MOST = 5.0  # times the first run's time that a finer run may take
+STATED = 3.0  # times `FINEST`, up to which a run that is left out is stated
 MOST_RINGS, MOST_ANGLES = 64, 256  # that a case may have
 
 
@@ -99,10 +101,10 @@ def left_out(analysis: Analysis, left: set[str]) -> str:
     if errors.largest(worst) not in left:
         return ""
     factors = _factors(_parts(errors, worst), allowed[worst], left)
-    if not (factors and _in_reach(factors)):
+    if not (factors and _in_reach(factors, STATED)):
         return "no finer run of a reasonable length would bring it there"
     finer = _finer(analysis, factors)
-    return f"a run with {finer.changes}, about {finer.cost:.2g} times as long, was left out"
+    return f"a run with {finer.changes}, about {plain(finer.cost, 2)} times as long, was left out"
 
 
 def finer_case(analysis: Analysis, left: set[str], most: float = MOST) -> Finer | None:
@@ -170,9 +172,9 @@ def _parts(errors: RunErrors, name: str) -> dict[str, float | None]:
     return {cause.name: getattr(getattr(errors, cause.name), name) for cause in fields(RunErrors)}
 
 
-def _in_reach(factors: Mapping[str, float]) -> bool:
-    """Whether anything is made finer by so much."""
-    return all(factor <= FINEST[cause] for cause, factor in factors.items())
+def _in_reach(factors: Mapping[str, float], times: float = 1.0) -> bool:
+    """Whether nothing is made finer by more than so many times `FINEST`."""
+    return all(factor <= times * FINEST[cause] for cause, factor in factors.items())
 
 
 def _factors(parts: Mapping[str, float | None], most: float, left: set[str]) -> dict[str, float]:

@@ -80,6 +80,7 @@ def test_what_is_left_out_is_stated_with_its_cost(example, monkeypatch):
     F = result.greatest_force
     assert after(errors(0.0, 1e-4 * F, 0.0, 0.0)) == ""  # accurate
     assert after(errors(0.0, 1e-2 * F, 0.0, 0.0), ALL - {"mesh"}) == ""  # its mesh is given: the advice is to change it
+    assert after(errors(0.0, 0.0, 0.01 * F, 0.0)).startswith("a run with 38 × 96 points per section, about 22 times")
     out_of_reach = "no finer run of a reasonable length would bring it there"
     assert after(errors(0.0, 1.0 * F, 0.0, 0.0)) == out_of_reach
     assert after(errors(0.0, 2e-3 * F, 1e-3 * F, 0.0), ALL - {"section"}) == out_of_reach  # of the section's part
