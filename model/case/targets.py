@@ -8,7 +8,6 @@ from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case
 from coilset.model.case.phases import Phase, Target, TimePhase
 from coilset.model.material.law.law import Law
-from coilset.model.material.law.own import OwnLaw
 
 SLACK = 1e-9  # of the free length: rounding of a height that was computed
 BORNE = 2.0  # times the elastic force at which all coils are in contact: a target beyond it is not reasonable
@@ -211,8 +210,12 @@ def _not_below(target: Target, free_length: float, lowest: float, place: str) ->
         )
 
 
-def check_own_law(case: Case, law: OwnLaw) -> None:
+def check_own_law(case: Case, keeps_direction: bool) -> None:
     """Reject what a law of one's own cannot do.
+
+    Args:
+        case: it.
+        keeps_direction: whether the law is the same in all directions across the wire.
 
     Raises:
         InputError: an entry that needs a material of a file, or sections whose directions across the wire are arbitrary
@@ -228,7 +231,7 @@ def check_own_law(case: Case, law: OwnLaw) -> None:
         raise InputError("a law of one's own brings its own rates; leave spin out", "mesh.section.spin")
     if case.mesh.section.kind == "warping":
         raise InputError("a law of one's own has three stresses; give curved or plane", "mesh.section.kind")
-    if case.mesh.section.kind == "plane" and not law.keeps_direction:
+    if case.mesh.section.kind == "plane" and not keeps_direction:
         raise InputError(
             "the law differs with the direction across the wire, which plane sections do not fix; give curved",
             "mesh.section.kind",

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from dolfinx import fem
@@ -15,7 +16,6 @@ from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.extremes import largest
 from coilset.model.body.body import Body, Moment
-from coilset.model.body.lever import Lever
 from coilset.model.body.state import Field, State, Where
 from coilset.model.material.law.law import Law
 from coilset.model.rod import forms
@@ -72,7 +72,7 @@ class Rod(Body):
         coefficients: Coefficients of the forms, with the section strains and forces of the trial state.
         chart: tangents of the nodes' trial rotation charts, shape (nodes, 3, 3).
         arms: stations whose unknowns are those of a rigid head, and where they are from its point in the stress-free
-            state, shape (3,), mm; `levers`: Levers of those among the local nodes.
+            state, shape (3,), mm; `levers`: Levers of those among the local nodes, see `FixedStation`.
     """
 
     predicts = True
@@ -118,7 +118,7 @@ class Rod(Body):
 
         self.coefficients = Coefficients(element, timoshenko_factor(law.E, law.G, self.radius, self.l0))
         self._increment = self.increment.x.array
-        self.levers: list[Lever] = []
+        self.levers: list[Any] = []
         self.arms: dict[int, np.ndarray] = {}
         self._forms = compiled_forms(self.comm, element)
         self._residual, self._tangent = self._forms.on(vars(self.coefficients), x, self._nodes)
@@ -209,17 +209,6 @@ class Rod(Body):
         for field in self._forces:
             np.copyto(field.trial, field.equilibrium)
         return bool(self._forces)
-
-    def fix_to_head(self, station: int, point: np.ndarray) -> None:
-        """Let the unknowns of a station be those of a rigid head, about a point of it, shape (3,), mm.
-
-        Every rank calls it, before the first step.
-        """
-        numbering, arm = self.numbering, self.line.stations[station] - point
-        self.arms[station] = arm
-        for node in np.flatnonzero(self.line.node == station):
-            unknowns = numbering.u[node], numbering.rotations[node]
-            self.levers.append(Lever(int(node), arm, *unknowns, self.cells, numbering.elements))
 
     def _move(self) -> None:
         """Bring nodes, frames and strains to the increments."""

@@ -27,6 +27,7 @@ from coilset.model.equilibrium.path.stability import Stability
 from coilset.model.equilibrium.path.step_error import StepError
 from coilset.model.equilibrium.system.heads import Heads, Holding
 from coilset.model.equilibrium.system.layout import LineLayout
+from coilset.model.equilibrium.system.lever import FixedStation
 from coilset.model.equilibrium.system.system import System
 from coilset.model.manufacture.initial_state import past_warnings
 from coilset.model.material.law.law import Law
@@ -157,13 +158,14 @@ def build_control(case: Case, spring: Spring, system: System, turns: np.ndarray)
     holder: HeadsSpec | SeatsSpec = case.clamps if clamped else case.seats
     rotating = any(spec.tilt != "held" or spec.turn != "held" for spec in (holder.bottom, holder.top))
     driven = any(target.rotates for phase in case.loading for target in heads_of(phase).values())
-    holding = Holding(clamped, case.seats.hold == "tips", (holder.bottom.held(), holder.top.held()), rotating or driven)
+    fix = FixedStation if rotating or driven else None
+    holding = Holding(clamped, case.seats.hold == "tips", (holder.bottom.held(), holder.top.held()), fix)
     if clamped:
         stations = [int(np.argmin(np.abs(turns - held))) for held in spring.held]
         pulled = [tail is not None and tail.pulled for tail in spring.tails]
         points = [tail is not None and tail.on_point for tail in spring.tails]
         holding = holding._replace(
-            turning=holding.turning or any(points),
+            fix=FixedStation if any(points) else fix,
             stations=(stations[0], stations[1]),
             at_station=(pulled[0], pulled[1]),
             on_point=(points[0], points[1]),

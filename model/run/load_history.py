@@ -96,7 +96,7 @@ class LoadHistory:
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring) if law is None else law
         if isinstance(self.law, OwnLaw):
-            check_own_law(case, self.law)
+            check_own_law(case, self.law.keeps_direction)
         check_steps(case)
         check_targets(case, spring, self.law.G)
         check_working(case, spring, self.law.G)

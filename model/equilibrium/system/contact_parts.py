@@ -7,8 +7,7 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.model.base.agreement import max_of_ranks
-from coilset.model.body.lever import Swing
-from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, Memory, TrialPositions
+from coilset.model.contact.base import Contact, Contribution, Memory, TrialPositions
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.nearby import Nearby
 
@@ -125,37 +124,3 @@ class ContactParts:
 def _those(part: Contribution, elements: np.ndarray) -> Contribution:
     """`part.only` of booleans, without a copy where they are all true."""
     return part if elements.all() else part.only(elements)
-
-
-def carried(part: Contribution, station: int, stations: int, swing: Swing) -> list[Contribution]:
-    """Contact elements, those on a station of a rigid head with the head's rotations among their unknowns.
-
-    Args:
-        part: elements; their unknowns are the displacement of the station.
-        station: its number, of so many `stations`.
-        swing: how it goes with the head.
-
-    Returns:
-        The elements that do not act on the station, and the others. The first and the last unknown of an element stay
-        so: they identify it.
-    """
-    own = (part.dofs // 3 == station) & (part.dofs < 3 * stations)
-    on_head = own.any(axis=1)
-    if not on_head.any():
-        return [part]
-    rest, part, own = part.only(~on_head), part.only(on_head), own[on_head]
-    m, k = part.dofs.shape
-    J = np.zeros((m, k, k + 3))
-    J[:, np.arange(k), np.arange(k)] = 1.0
-    J[:, :, k:] = np.where(own[..., None], swing.first[part.dofs % 3], 0.0)
-    force = np.zeros((m, 3))
-    for axis in range(3):
-        force[:, axis] = np.where(own & (part.dofs % 3 == axis), part.forces, 0.0).sum(axis=1)
-    stiffness = np.swapaxes(J, 1, 2) @ part.stiffness @ J
-    stiffness[:, k:, k:] += np.einsum("kli,mi->mkl", swing.second, force)
-    rotations = 3 * stations + 2 * SEAT_DOFS + 3 * station + np.arange(3)
-    dofs = np.hstack([part.dofs, np.tile(rotations, (m, 1))])
-    forces = np.einsum("mij,mi->mj", J, part.forces)
-    order = np.array([*range(k - 1), *range(k, k + 3), k - 1])
-    stiffness = stiffness[:, order[:, None], order]
-    return [rest, replace(part, dofs=dofs[:, order], forces=forces[:, order], stiffness=stiffness)]

@@ -6,7 +6,7 @@ Displacements are those of the head's point on the spring's axis, rotations the 
 the start.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -32,7 +32,8 @@ class Holding(NamedTuple):
         tips: on seats: whether the wire's tips are held sideways and against rotation, as in pockets; else contacts
             alone hold the wire.
         heads: held freedoms of the bottom and of the top head, without the axial ones.
-        turning: of clamped ends: whether a head ever rotates.
+        fix: of clamped ends with heads that rotate: fixes a station of a system to the point of a head, see
+            FixedStation; None: no head ever rotates.
         stations: of clamped ends: those that belong to the heads, from the first and from the last one.
         at_station: of clamped ends: whether a head's point is at its station, as of a hook, and not on the axis.
         on_point: of clamped ends: whether a contact holds the wire in the head instead, a Support.
@@ -41,7 +42,7 @@ class Holding(NamedTuple):
     clamped: bool
     tips: bool = True
     heads: Sequence[Sequence[int]] = ((0, 1, 3, 4, 5), (0, 1, 3, 4, 5))
-    turning: bool = False
+    fix: Callable[[System, int, np.ndarray], object] | None = None
     stations: tuple[int, int] = (0, -1)
     at_station: tuple[bool, bool] = (False, False)
     on_point: tuple[bool, bool] = (False, False)
@@ -65,7 +66,7 @@ class Heads:
         layout = system.layout
         assert isinstance(layout, LineLayout)
         self.system, self.layout, self.free_length, self.radius = system, layout, free_length, radius
-        self.clamped, self.measure, self._turning = holding.clamped, AXIAL, holding.turning
+        self.clamped, self.measure, self._turning = holding.clamped, AXIAL, holding.fix is not None
         first, last = (station % len(layout.station_dofs) for station in holding.stations)
         self._points = [
             layout.rod.line.stations[station] * ([1.0, 1.0, 1.0] if there else [0.0, 0.0, 1.0])
@@ -83,11 +84,11 @@ class Heads:
             parts.append(own if rigid else seat)
             others.extend(seat if rigid else own[components])
             self.tips[end] = station, components
-            if rigid and holding.turning:
-                layout.rod.fix_to_head(station, point)
+            if rigid and holding.fix is not None:
+                system.fixed.append(holding.fix(system, station, point))
         self.dofs = np.concatenate(parts)
         self.held = {int(dof): 0.0 for dof in (*others, *self.dofs[held])}
-        if holding.clamped and holding.turning:
+        if holding.clamped and self._turning:
             seats = system.state["seats"]
             start = np.concatenate([np.pad(point, (0, 3)) for point in self._points])
             seats.trial[:] = seats.equilibrium[:] = start

@@ -2,22 +2,20 @@
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from dolfinx import la
 from petsc4py import PETSc
 
 from coilset.model.body.body import Body, Moment
-from coilset.model.body.lever import Swing
 from coilset.model.body.state import Where
-from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution
-from coilset.model.equilibrium.system.contact_parts import ContactParts, carried
+from coilset.model.contact.base import Contact, Contribution
+from coilset.model.equilibrium.system.contact_parts import ContactParts
 from coilset.model.equilibrium.system.layout import Layout, LineLayout
 from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.matrix import TangentMatrix
 from coilset.model.equilibrium.system.sums import add_vectors
-from coilset.model.rotations.vectors import nearest_vector, rotation_matrix
 
 EXPIRED = b""  # in the place of the increments of an evaluation
 
@@ -57,6 +55,7 @@ class System:
         increments: PETSc's vector of the trial increments, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
         touching: ContactParts, if there are contacts.
+        fixed: FixedStations, those that go with a rigid head which rotates.
         last: Evaluation.
         evaluations: number of states that were evaluated so far.
     """
@@ -79,8 +78,7 @@ class System:
         self._body_increments = body.increment.x.array
         if self.contacts:
             self.touching = ContactParts(self.line, self.contacts)
-        self._arms = layout.rod.arms if isinstance(layout, LineLayout) else {}
-        self._swings: dict[int, Swing] = {}
+        self.fixed: list[Any] = []
         self._is_rotation = np.zeros(layout.size_local, dtype=bool)
         self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
         self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
@@ -129,8 +127,8 @@ class System:
         has_stress = self.body.update()
         if self.comm.size > 1:
             has_stress = self.comm.allreduce(int(has_stress)) == self.comm.size
-        if self._arms:
-            self._follow_heads()
+        for station in self.fixed:
+            station.follow()
         if not has_stress:
             self.last = Evaluation(values, False, [])
         elif not self.contacts:
@@ -141,25 +139,12 @@ class System:
             self._assemble(self.body.internal_forces, self._reactions.trial)
             self.internal.stateIncrease()  # its entries have changed behind PETSc's back
 
-    def _follow_heads(self) -> None:
-        """The pose of heads to which stations are fixed, and how these go with them; collective."""
-        assert self._seats is not None
-        rod, line = self.line.rod, self.line
-        for station, arm in self._arms.items():
-            at_bottom = 2 * station < len(line.station_dofs)
-            own = slice(0, SEAT_DOFS) if at_bottom else slice(SEAT_DOFS, 2 * SEAT_DOFS)
-            x, ψ = (line.at_station(values, station) for values in (rod.x, self._body_increments[rod.rotation_dofs]))
-            R = line.at_station(self.state["R"].equilibrium, station)
-            self._swings[station] = swing = Swing.of(ψ, R @ arm)
-            θ = nearest_vector(rotation_matrix(ψ) @ R, self._seats.equilibrium[own][3:])
-            self._seats.trial[own] = np.concatenate([x - R @ arm - swing.shift, θ])
-
     @property
     def acting(self) -> list[Contribution]:
         """Contributions of the last evaluation to the unknowns: forces on a station of a head act on the head."""
         parts = self.last.contributions
-        for station, swing in self._swings.items():
-            parts = [one for part in parts for one in carried(part, station, len(self.line.station_dofs), swing)]
+        for station in self.fixed:
+            parts = station.carried(parts)
         return parts
 
     def _touch(self) -> tuple[list[Contribution], float, int]:
@@ -180,7 +165,7 @@ class System:
             add(local.array)
             local.scatter_reverse(la.InsertMode.add)
             values[: self.layout.owned] = local.array[: self.layout.owned]
-        for part in self.acting if self._arms else self.last.contributions:
+        for part in self.acting:
             if len(part.dofs):
                 add_vectors(self.line.contact_dofs, part.dofs, part.forces, self.layout.start, values)
 
@@ -337,7 +322,7 @@ class System:
         """Assemble `tangent` with the moduli of the last evaluation, at the present trial state; collective."""
         if self.contacts:
             self.touching.iterate()
-        matrix.fill(self.acting if self._arms else self.last.contributions, at_step_start, share)
+        matrix.fill(self.acting, at_step_start, share)
         if load.resistance is not None:
             load.resistance.add_stiffness(matrix.mat)
         matrix.hold(load.held)

@@ -9,11 +9,15 @@ and has the head's rotation. A force f on the node therefore acts on ψ by Xᵀ 
 tangent of the node's unknowns becomes Gᵀ K G + f · ∂²x/∂ψ², with G = (1, X; 0, 1): it stays symmetric.
 """
 
+import weakref
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from coilset.model.rotations.vectors import rotation_derivatives, rotation_matrix
+from coilset.model.contact.base import SEAT_DOFS, Contribution
+from coilset.model.equilibrium.system.system import System
+from coilset.model.rotations.vectors import nearest_vector, rotation_derivatives, rotation_matrix
 
 
 class Swing(NamedTuple):
@@ -104,3 +108,75 @@ class Lever:
 def _places(unknowns: np.ndarray, of: np.ndarray) -> np.ndarray:
     """Places of some unknowns among those of a cell."""
     return np.array([int(np.flatnonzero(unknowns == dof)[0]) for dof in of])
+
+
+class FixedStation:
+    """A station whose unknowns are those of a rigid head that rotates; made on every rank, before the first step.
+
+    Args:
+        system: of the rod whose station it is.
+        station: its number.
+        point: of the head in the stress-free state, shape (3,), mm.
+    """
+
+    def __init__(self, system: System, station: int, point: np.ndarray) -> None:
+        self._system: System = weakref.proxy(system)  # that the end of an analysis frees it at once
+        self._station, rod = station, system.line.rod
+        self._swing: Swing | None = None  # of the last evaluation
+        self._at_bottom = 2 * station < len(system.line.station_dofs)
+        self._arm = rod.arms[station] = rod.line.stations[station] - point
+        for node in np.flatnonzero(rod.line.node == station):
+            unknowns = rod.numbering.u[node], rod.numbering.rotations[node]
+            rod.levers.append(Lever(int(node), self._arm, *unknowns, rod.cells, rod.numbering.elements))
+
+    def follow(self) -> None:
+        """Write the head's pose in the trial state, and how the station goes with it; collective."""
+        line, state, station, arm = self._system.line, self._system.state, self._station, self._arm
+        rod, own = line.rod, slice(0, SEAT_DOFS) if self._at_bottom else slice(SEAT_DOFS, 2 * SEAT_DOFS)
+        increments = rod.increment.x.array
+        x, ψ = (line.at_station(values, station) for values in (rod.x, increments[rod.rotation_dofs]))
+        R = line.at_station(state["R"].equilibrium, station)
+        self._swing = swing = Swing.of(ψ, R @ arm)
+        θ = nearest_vector(rotation_matrix(ψ) @ R, state["seats"].equilibrium[own][3:])
+        state["seats"].trial[own] = np.concatenate([x - R @ arm - swing.shift, θ])
+
+    def carried(self, parts: list[Contribution]) -> list[Contribution]:
+        """Contact elements, those on the station with the head's rotations among their unknowns."""
+        if self._swing is None:
+            return parts
+        stations = len(self._system.line.station_dofs)
+        return [one for part in parts for one in carried(part, self._station, stations, self._swing)]
+
+
+def carried(part: Contribution, station: int, stations: int, swing: Swing) -> list[Contribution]:
+    """Contact elements, those on a station of a rigid head with the head's rotations among their unknowns.
+
+    Args:
+        part: elements; their unknowns are the displacement of the station.
+        station: its number, of so many `stations`.
+        swing: how it goes with the head.
+
+    Returns:
+        The elements that do not act on the station, and the others. The first and the last unknown of an element stay
+        so: they identify it.
+    """
+    own = (part.dofs // 3 == station) & (part.dofs < 3 * stations)
+    on_head = own.any(axis=1)
+    if not on_head.any():
+        return [part]
+    rest, part, own = part.only(~on_head), part.only(on_head), own[on_head]
+    m, k = part.dofs.shape
+    J = np.zeros((m, k, k + 3))
+    J[:, np.arange(k), np.arange(k)] = 1.0
+    J[:, :, k:] = np.where(own[..., None], swing.first[part.dofs % 3], 0.0)
+    force = np.zeros((m, 3))
+    for axis in range(3):
+        force[:, axis] = np.where(own & (part.dofs % 3 == axis), part.forces, 0.0).sum(axis=1)
+    stiffness = np.swapaxes(J, 1, 2) @ part.stiffness @ J
+    stiffness[:, k:, k:] += np.einsum("kli,mi->mkl", swing.second, force)
+    rotations = 3 * stations + 2 * SEAT_DOFS + 3 * station + np.arange(3)
+    dofs = np.hstack([part.dofs, np.tile(rotations, (m, 1))])
+    forces = np.einsum("mij,mi->mj", J, part.forces)
+    order = np.array([*range(k - 1), *range(k, k + 3), k - 1])
+    stiffness = stiffness[:, order[:, None], order]
+    return [rest, replace(part, dofs=dofs[:, order], forces=forces[:, order], stiffness=stiffness)]
