@@ -11,6 +11,8 @@ from petsc4py import PETSc
 
 from coilset.model.body.state import Field, State
 
+SECONDS = 3600.0  # of an hour
+
 
 class Moment(NamedTuple):
     """A point in time: hours since the start, and the temperature, K."""

@@ -7,21 +7,19 @@ import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
+from coilset.model.base.package import package
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS, Contact
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine, WirePoints
-from coilset.model.contact.faces import FacedCoils, FacedSeat, seat_arms
-from coilset.model.contact.friction import CoilFriction, GuideFriction, SeatFriction
-from coilset.model.contact.hold import Groove, Guide, Mount, Support
 from coilset.model.contact.seat import Seat
-from coilset.model.contact.thesis_gaps import Gaps
 
 # Default bedding is E/4: wires that flatten where they touch along a line have E/7.5 to E/4.9 (docs/contact.md).
 MODULUS_OF_BEDDING = 4.0
 FREE_TILT_OF_BEDDING = 1e-8  # stiffness of a joint that is free to tilt, relative to that of the coil's bedding, b r³
-ASIDE_OF_DIAMETER = 0.1  # nodes of a gap element may be so far beside each other: they meet 0.5 % of a diameter late
 GUIDES = "arbor", "sleeve"
 ONSET_OF_DIAMETER = 1e-3  # distance over which contact sets in, in wire diameters
+# The doors to contacts that not every spring has.
+FACES, FRICTION, GAPS, HOLD = (f"coilset.model.contact.{name}" for name in ("faces", "friction", "thesis_gaps", "hold"))
 
 
 def build_contacts(
@@ -54,26 +52,33 @@ def build_contacts(
     onset = ONSET_OF_DIAMETER * 2.0 * float(radius.min())
     points = CentreLine(turns, radius, lengths).points()
     contacts: list[Contact] = []
-    if contact.coils == "closest":
-        if spring.section is None:
-            contacts.append(Coils(points, stations, bedding, onset))
-        else:
-            contacts.append(FacedCoils(points, stations, bedding, onset, spring.section))
+    if contact.coils == "gaps":
+        gaps = package(GAPS, "a gap element", "contact.coils")
+        contacts.append(gaps.gaps_one_turn_apart(turns, radius, lengths, bedding, onset))
+    elif spring.section is None:
+        contacts.append(Coils(points, stations, bedding, onset))
     else:
-        contacts.append(gaps_one_turn_apart(turns, radius, lengths, bedding, onset))
+        faces = package(FACES, "wire that is not round", "spring.wire")
+        contacts.append(faces.FacedCoils(points, stations, bedding, onset, spring.section))
     if seats is not None:
         for end in ENDS:
             contacts += build_seat(end, seats, spring, points, stations, (bedding, onset), end in moving)
     for end, tail, x in zip(ENDS, spring.tails, stations[[0, -1]], strict=True):
         if tail is not None and tail.on_point:
             along = tail.along(tail.marks[-1:], 1)[0]
-            contacts.append(Support(end, points, stations, bedding, np.tile([0.0, 0.0, x[2], 0.0, 0.0, 0.0], 2), along))
+            support = package(HOLD, "an arm that a point holds", "spring.arms").Support
+            contacts.append(support(end, points, stations, bedding, np.tile([0.0, 0.0, x[2], 0.0, 0.0, 0.0], 2), along))
     for name in GUIDES:
         diameter = getattr(contact, name)
         if diameter is not None:
             refuse_overlap(name, diameter, stations, radius)
-            contacts.append(Guide(name, points, 0.5 * diameter, bedding, onset))
-    return contacts + frictions(contact.friction, contacts, stations, seats_at(spring.free_length))
+            guide = package(HOLD, "an arbor or a sleeve", f"contact.{name}").Guide
+            contacts.append(guide(name, points, 0.5 * diameter, bedding, onset))
+    friction = contact.friction
+    if friction.seats or friction.coils or friction.guides:
+        frictions = package(FRICTION, "friction", "contact.friction").frictions
+        contacts += frictions(friction, contacts, stations, seats_at(spring.free_length))
+    return contacts
 
 
 def bedding_of(contact: Any, E: float) -> float:
@@ -100,19 +105,6 @@ def seats_at(level: float) -> np.ndarray:
     start = np.zeros(2 * SEAT_DOFS)
     start[SEAT_DOFS + LEVEL] = level
     return start
-
-
-def frictions(friction: Any, contacts: list[Contact], stations: np.ndarray, seats: np.ndarray) -> list[Contact]:
-    """Friction of the contacts, if any."""
-    found: list[Contact] = []
-    for contact in contacts:
-        if isinstance(contact, Seat) and friction.seats:
-            found.append(SeatFriction(contact, friction.seats, stations, seats))
-        elif isinstance(contact, Guide) and friction.guides:
-            found.append(GuideFriction(contact, friction.guides, stations, seats))
-        elif isinstance(contact, Coils) and friction.coils:
-            found.append(CoilFriction(contact, friction.coils, stations, seats))
-    return found
 
 
 def build_seat(
@@ -147,38 +139,17 @@ def build_seat(
             Seat(end, points, reach, stations, start, bedding, onset, side.slope, step, moves),
         ]
     else:
-        arms = seat_arms(spring.section, reach, points.radius, 1.0 if end == "bottom" else -1.0)
-        contacts = [FacedSeat(end, points, reach, stations, start, bedding, onset, arms, step)]
+        faces = package(FACES, "wire that is not round", "spring.wire")
+        arms = faces.seat_arms(spring.section, reach, points.radius, 1.0 if end == "bottom" else -1.0)
+        contacts = [faces.FacedSeat(end, points, reach, stations, start, bedding, onset, arms, step)]
     if seats.hold == "groove":
-        contacts.append(Groove(end, points, seats.groove_turns, stations, bedding, start))
+        groove = package(HOLD, "a groove", "seats.hold").Groove
+        contacts.append(groove(end, points, seats.groove_turns, stations, bedding, start))
     if side.moves:
         mount = np.zeros(SEAT_DOFS)
         if side.tilt == "free":
             mount[3:5] = FREE_TILT_OF_BEDDING * bedding * float(spring.mean_radius(points.turns).mean()) ** 3
         for dof, k in side.springs().items():
             mount[dof] = k
-        contacts.append(Mount(end, len(stations), mount, start))
+        contacts.append(package(HOLD, "a seat that moves", f"seats.{end}").Mount(end, len(stations), mount, start))
     return contacts
-
-
-def gaps_one_turn_apart(
-    turns: np.ndarray, radius: np.ndarray, lengths: np.ndarray, bedding: float, onset: float
-) -> Gaps:
-    """The thesis's gap elements between stations one turn apart.
-
-    Raises:
-        InputError: if there are none: elements between others would close too late, or never.
-    """
-    stiffness = bedding * 0.5 * (np.append(lengths, 0.0) + np.append(0.0, lengths))  # of each station
-    lower = np.flatnonzero(turns <= turns[-1] - 1.0 + 1e-9)
-    upper = np.searchsorted(turns, turns[lower] + 1.0 - 1e-9)
-    upper -= np.abs(turns[upper - 1] - turns[lower] - 1.0) < np.abs(turns[upper] - turns[lower] - 1.0)  # the nearest
-    off = np.abs(turns[upper] - turns[lower] - 1.0) * (lengths / np.diff(turns))[lower]
-    if np.any(off > ASIDE_OF_DIAMETER * 2.0 * radius[lower]):
-        raise InputError(
-            f"gaps join nodes one turn apart, but on this mesh the nearest are up to {off.max():.3g} mm "
-            "beside them; give a number of elements_per_turn whose product with the turns is whole, or "
-            "coils: closest",
-            "contact.coils",
-        )
-    return Gaps(np.stack([lower, upper], axis=1), radius[lower] + radius[upper], stiffness[lower], onset)

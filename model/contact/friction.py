@@ -27,6 +27,7 @@ S. Hüeber, G. Stadler, B. Wohlmuth, SIAM J. Sci. Comput. 30 (2008) 572 for fric
 from abc import abstractmethod
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -243,6 +244,26 @@ class CoilFriction(Friction):
 
 
 @njit(**COMPILED)
+def frictions(friction: Any, contacts: list[Contact], stations: np.ndarray, seats: np.ndarray) -> list[Contact]:
+    """Friction of some of the contacts.
+
+    Args:
+        friction: coefficients, the `friction` section of a case's `contact`.
+        contacts: all kinds of contact.
+        stations: positions, shape (n, 3), mm.
+        seats: at the start, shape (12,), mm and rad.
+    """
+    found: list[Contact] = []
+    for contact in contacts:
+        if isinstance(contact, Seat) and friction.seats:
+            found.append(SeatFriction(contact, friction.seats, stations, seats))
+        elif isinstance(contact, Guide) and friction.guides:
+            found.append(GuideFriction(contact, friction.guides, stations, seats))
+        elif isinstance(contact, Coils) and friction.coils:
+            found.append(CoilFriction(contact, friction.coils, stations, seats))
+    return found
+
+
 def _within(t: Triple, limit: float) -> Triple:
     """Shorten t to the cone."""
     size = np.sqrt(dot(t, t))

@@ -3,7 +3,10 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from coilset.model.base.errors import InputError
 from coilset.model.contact.base import Contact, Contribution, TrialPositions, one_sided
+
+ASIDE_OF_DIAMETER = 0.1  # nodes of a gap element may be so far beside each other: they meet 0.5 % of a diameter late
 
 
 class Gaps(Contact):
@@ -45,3 +48,26 @@ class Gaps(Contact):
             np.arange(len(length)),
             self.stiffness * self.onset,
         )
+
+
+def gaps_one_turn_apart(
+    turns: np.ndarray, radius: np.ndarray, lengths: np.ndarray, bedding: float, onset: float
+) -> Gaps:
+    """The thesis's gap elements between stations one turn apart.
+
+    Raises:
+        InputError: if there are none: elements between others would close too late, or never.
+    """
+    stiffness = bedding * 0.5 * (np.append(lengths, 0.0) + np.append(0.0, lengths))  # of each station
+    lower = np.flatnonzero(turns <= turns[-1] - 1.0 + 1e-9)
+    upper = np.searchsorted(turns, turns[lower] + 1.0 - 1e-9)
+    upper -= np.abs(turns[upper - 1] - turns[lower] - 1.0) < np.abs(turns[upper] - turns[lower] - 1.0)  # the nearest
+    off = np.abs(turns[upper] - turns[lower] - 1.0) * (lengths / np.diff(turns))[lower]
+    if np.any(off > ASIDE_OF_DIAMETER * 2.0 * radius[lower]):
+        raise InputError(
+            f"gaps join nodes one turn apart, but on this mesh the nearest are up to {off.max():.3g} mm "
+            "beside them; give a number of elements_per_turn whose product with the turns is whole, or "
+            "coils: closest",
+            "contact.coils",
+        )
+    return Gaps(np.stack([lower, upper], axis=1), radius[lower] + radius[upper], stiffness[lower], onset)

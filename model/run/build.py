@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -11,6 +12,7 @@ from mpi4py import MPI
 from coilset.meshes.line import line_mesh
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement, chord_placement, refuse_sharp_bends, section_placement
+from coilset.model.base.package import package
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.head_freedoms import DamperSpec, HeadsSpec
@@ -27,24 +29,23 @@ from coilset.model.equilibrium.path.stability import Stability
 from coilset.model.equilibrium.path.step_error import StepError
 from coilset.model.equilibrium.system.heads import Heads, Holding
 from coilset.model.equilibrium.system.layout import LineLayout
-from coilset.model.equilibrium.system.lever import FixedStation
 from coilset.model.equilibrium.system.system import System
-from coilset.model.manufacture.initial_state import past_warnings
 from coilset.model.material.law.law import Law
 from coilset.model.results.limits import case_limits
 from coilset.model.results.records.record import ContactRecord, ForceLine, Limits, Setup
 from coilset.model.rod.elements import ELEMENTS
-from coilset.model.rod.heat import WireHeat, heat_constants
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.triads import chord_triads
 from coilset.model.run.contact_fineness import coarse_mesh_warnings
 from coilset.model.run.effort import Effort, machine_memory
 from coilset.model.runtime.threads import Threads
-from coilset.model.section.outlined_section import Outlined
 from coilset.model.standards.buckling import buckling_travel, seating_of
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_allowed, case_elastic, case_strength
 
+# The doors to what not every spring has.
+HEAT, PAST = "coilset.model.rod.heat", "coilset.model.manufacture.initial_state"
+OUTLINED, LEVER = "coilset.model.section.outlined_section", "coilset.model.equilibrium.system.lever"
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
 AUGMENTED = 2.0  # times the maximum penetration: up to there contacts are augmented although the case does not say so
 
@@ -78,7 +79,8 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
     section, rule, automatic = case.mesh.section, case.section_rule, case.solver.control.steps.automatic
     if spring.section is not None:
-        rule = Outlined(spring.section.scaled(1.0, spring.hand)).rule(len(rule))  # the binormal of a left one is down
+        outlined = package(OUTLINED, "wire that is not round", "spring.wire").Outlined
+        rule = outlined(spring.section.scaled(1.0, spring.hand)).rule(len(rule))  # the binormal of a left one is down
     steps = sum(phase.count(automatic) for phase in case.loading)
     points = 2 * len(rule) * len(element.abscissae) // 2  # an effort is that of two sections
     effort = Effort.of(len(turns) - 1, points, steps, case.steps_error is not None)
@@ -109,13 +111,29 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     return MeshedWire(turns, radius, placement, rod, (*coarse, *effort.warnings()))
 
 
-def build_heat(case: Case, rod: Rod) -> WireHeat | None:
-    """Heat along the wire, if the case requests it."""
+def build_heat(case: Case, rod: Rod) -> Any:
+    """WireHeat of the rod, if the case requests it, else None."""
     spec = case.heat
     if spec is None:
         return None
     start = rod.temperature if spec.surroundings is None else spec.surroundings
-    return WireHeat(rod, heat_constants(rod.law, spec.conductivity, spec.convection, spec.tips, start))
+    heat = package(HEAT, "heat that flows", "heat")
+    return heat.WireHeat(rod, heat.heat_constants(rod.law, spec.conductivity, spec.convection, spec.tips, start))
+
+
+def build_past(case: Case, rod: Rod) -> tuple[float | None, list[Warning]]:
+    """Give the wire the stresses of its manufacture, if the case has one; collective.
+
+    Returns:
+        Mean diameter to which it was coiled, mm, None if it was not, and warnings.
+
+    Raises:
+        InputError: if it cannot be made so.
+    """
+    if not case.past:
+        return None, []
+    made = package(PAST, "wire with a past", f"spring.{case.past[0]}")
+    return made.give_past(rod, case.spring), made.past_warnings(rod, case.spring)
 
 
 def _deepest(case: Case, least_radius: float) -> float:
@@ -158,14 +176,14 @@ def build_control(case: Case, spring: Spring, system: System, turns: np.ndarray)
     holder: HeadsSpec | SeatsSpec = case.clamps if clamped else case.seats
     rotating = any(spec.tilt != "held" or spec.turn != "held" for spec in (holder.bottom, holder.top))
     driven = any(target.rotates for phase in case.loading for target in heads_of(phase).values())
-    fix = FixedStation if rotating or driven else None
-    holding = Holding(clamped, case.seats.hold == "tips", (holder.bottom.held(), holder.top.held()), fix)
+    holding = Holding(clamped, case.seats.hold == "tips", (holder.bottom.held(), holder.top.held()))
     if clamped:
         stations = [int(np.argmin(np.abs(turns - held))) for held in spring.held]
         pulled = [tail is not None and tail.pulled for tail in spring.tails]
         points = [tail is not None and tail.on_point for tail in spring.tails]
+        rotates = rotating or driven or any(points)
         holding = holding._replace(
-            fix=FixedStation if any(points) else fix,
+            fix=package(LEVER, "a head that rotates", "heads").FixedStation if rotates else None,
             stations=(stations[0], stations[1]),
             at_station=(pulled[0], pulled[1]),
             on_point=(points[0], points[1]),
@@ -191,9 +209,13 @@ def build_continuation(
 
 
 def build_setup(
-    case: Case, spring: Spring, wire: MeshedWire, contacts: Sequence[Contact], coiling_diameter: float | None
+    case: Case,
+    spring: Spring,
+    wire: MeshedWire,
+    contacts: Sequence[Contact],
+    past: tuple[float | None, list[Warning]],
 ) -> Setup:
-    """Setup of the records of a run."""
+    """Setup of the records of a run; `past` as `build_past` gives it."""
     rod, law, least_radius = wire.rod, wire.rod.law, float(wire.radius.min())
     records = tuple(
         ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts
@@ -206,7 +228,7 @@ def build_setup(
         *case_allowed(case, spring),
         creep=law.data.creep.tests if law.data.creep else None,
     )
-    warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
+    warnings = (*case_warnings(case, spring, law), *past[1], *wire.warnings)
     elastic = case_elastic(case, law)
     ratio = elastic.shear_modulus / elastic.young_modulus
     buckling = buckling_travel(spring, ratio, seating_of(case)) if is_pressed(case, spring) else math.inf
@@ -228,7 +250,7 @@ def build_setup(
         limits=limits,
         rates_at=tuple(case.rates_at),
         warnings=warnings,
-        coiling_diameter=coiling_diameter,
+        coiling_diameter=past[0],
         force_line=build_force_line(case),
         bounds=case_limits(case, spring, elastic.shear_modulus),
         initial_tension=getattr(case.spring, "initial_tension", None) or 0.0,

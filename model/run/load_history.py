@@ -26,9 +26,7 @@ from coilset.model.equilibrium.path.stability import Stability, mode_in_words
 from coilset.model.equilibrium.path.step_sizes import StepSizes
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
-from coilset.model.manufacture.initial_state import give_past
 from coilset.model.material.law.law import Law
-from coilset.model.material.law.own import OwnLaw
 from coilset.model.results.files.checkpoint import Saved
 from coilset.model.results.records.record import Result, Snapshot, Step
 from coilset.model.results.records.releases import is_released
@@ -39,6 +37,7 @@ from coilset.model.run.build import (
     build_heat,
     build_method,
     build_newton,
+    build_past,
     build_setup,
     build_wire,
 )
@@ -95,7 +94,7 @@ class LoadHistory:
         self.further: dict[str, Any] = {"law": law, "contacts": contacts, "steps": steps}
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring) if law is None else law
-        if isinstance(self.law, OwnLaw):
+        if self.law.keeps_direction is not None:
             check_own_law(case, self.law.keeps_direction)
         check_steps(case)
         check_targets(case, spring, self.law.G)
@@ -104,7 +103,7 @@ class LoadHistory:
         wire = build_wire(case, spring, self.law, comm, threads)
         self.rod = wire.rod
         self.heat = build_heat(case, self.rod)
-        coiling_diameter = give_past(self.rod, case.spring)
+        past = build_past(case, self.rod)
         seats = case.seats if case.ends == "seats" else None
         moving = frozenset(end for phase in case.loading for end in heads_of(phase))
         kinds = build_contacts(case.contact, seats, spring, wire.turns, self.rod.line.stations, self.law.E, moving)
@@ -124,7 +123,7 @@ class LoadHistory:
         self.continuation.steps = steps(self.continuation.control)
         self.free_ends = FreeEnds(self.control, self.continuation, wire.turns, spring.turns)
         self.program = LoadProgram(self.control, self.continuation)
-        self.setup = build_setup(case, spring, wire, kinds, coiling_diameter)
+        self.setup = build_setup(case, spring, wire, kinds, past)
         self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.stability, detailed)
         self.continuation.overshoots = self.recorder.overshoots
 

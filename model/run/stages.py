@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from typing import Literal
 
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.body.body import SECONDS
 from coilset.model.case.phases import AnyPhase, TimePhase, drives_at
 from coilset.model.equilibrium.path.program import Stage
-from coilset.model.material.creep.law import SECONDS
 
 
 def stage_of(loading: Sequence[AnyPhase], number: int, spring: Spring, timeless: bool = False) -> Stage:

@@ -5,9 +5,8 @@ import pytest
 
 from coilset.model.base.errors import InputError
 from coilset.model.contact.base import TrialPositions, one_sided
-from coilset.model.contact.build import gaps_one_turn_apart
 from coilset.model.contact.elements import one_sided_at
-from coilset.model.contact.thesis_gaps import Gaps
+from coilset.model.contact.thesis_gaps import Gaps, gaps_one_turn_apart
 from coilset.verification.stops import Stops
 
 SEATS = np.zeros(12)

@@ -10,13 +10,13 @@ own temperature, which changes between the steps (`rod/heat.py`); by time harden
 
 import numpy as np
 
+from coilset.model.body.body import SECONDS
 from coilset.model.material.creep.entries import Creep, RateDependence
 from coilset.model.material.creep.flow import SCALED
 from coilset.model.material.creep.forms import FORMS
 from coilset.model.material.law.functions import RATE
 from coilset.model.material.law.parts import Parts
 
-SECONDS = 3600.0  # of an hour
 GAS_CONSTANT = 8.31446261815324  # J/(mol K)
 # The clock of a body: hours since the start, temperature (K), and the equivalent hours at T₀.
 HOURS, TEMPERATURE, WORTH = range(3)

@@ -29,7 +29,12 @@ class Law:
 
     Raises:
         InputError: if the functions violate a condition of the theory.
+
+    Attributes:
+        keeps_direction: of a law of one's own, whether it is the same for all directions across the wire; else None.
     """
+
+    keeps_direction: bool | None = None
 
     def __init__(self, data: MaterialFile, spin: bool = False, file: str | Path = "") -> None:
         self.data, self.spin, self.file = data, spin, str(file)
