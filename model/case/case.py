@@ -380,7 +380,7 @@ class Case(Strict):
 
     sheet: Annotated[
         Any,
-        Entry("coilset.model.case.sheet:SheetSpec"),
+        Entry("coilset.model.report.document.entries:SheetSpec"),
         Field(description="head of the data sheet by `coilset sheet --out sheet.pdf`"),
     ] = None
 

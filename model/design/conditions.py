@@ -7,11 +7,11 @@ from typing import Any
 
 from coilset.model.base.errors import InputError
 from coilset.model.case.case import check
+from coilset.model.case.material import case_elastic, case_law
 from coilset.model.design.file import Conditions, DesignFile, Limits
 from coilset.model.results.limits import case_limits
 from coilset.model.results.records.units import quantity, unit_of
 from coilset.model.results.records.working import is_working_number, place_of
-from coilset.model.standards.wires.law import case_elastic, case_law
 
 GROUP = "such_that."  # before the names of conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so

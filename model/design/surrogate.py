@@ -9,10 +9,10 @@ import numpy as np
 
 from coilset.model.base.errors import SolveError
 from coilset.model.case.case import Case
+from coilset.model.case.material import case_law
 from coilset.model.design.conditions import Condition
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
-from coilset.model.standards.wires.law import case_law
 from coilset.model.uniform_coil.estimate import estimate
 
 

@@ -17,6 +17,7 @@ from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.head_freedoms import DamperSpec, HeadsSpec
 from coilset.model.case.loading import is_pressed
+from coilset.model.case.material import case_allowed, case_elastic, case_strength
 from coilset.model.case.phases import Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.contact.base import Contact
@@ -41,7 +42,6 @@ from coilset.model.run.effort import Effort, machine_memory
 from coilset.model.runtime.threads import Threads
 from coilset.model.standards.buckling import buckling_travel, seating_of
 from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.wires.law import case_allowed, case_elastic, case_strength
 
 # The doors to what not every spring has.
 HEAT, PAST = "coilset.model.rod.heat", "coilset.model.manufacture.initial_state"

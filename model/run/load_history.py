@@ -15,6 +15,7 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.base.warning import Warning
 from coilset.model.body.state import State
 from coilset.model.case import Case
+from coilset.model.case.material import case_law
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.targets import check_own_law, check_steps, check_targets, check_times, check_working
 from coilset.model.contact.base import Contact
@@ -43,7 +44,6 @@ from coilset.model.run.build import (
 )
 from coilset.model.run.recorder import Recorder
 from coilset.model.run.stages import stage_of
-from coilset.model.standards.wires.law import case_law
 
 log = logging.getLogger("coilset.steps")
 FurtherContacts = Callable[[WirePoints, np.ndarray], Sequence[Contact]]

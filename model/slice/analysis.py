@@ -11,6 +11,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case
+from coilset.model.case.material import case_law
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
 from coilset.model.case.targets import check_travel
 from coilset.model.results.records.releases import FREE
@@ -20,7 +21,6 @@ from coilset.model.slice.lattice import Lattice
 from coilset.model.slice.problem import Effort, SliceProblem
 from coilset.model.slice.slice import Coil, Slice
 from coilset.model.slice.watch import Watch
-from coilset.model.standards.wires.law import case_law
 
 ACROSS, INSIDE = 5.75, 2.0  # triangles across the section, how much finer at the inside: 600 unknowns for a round wire
 DEGREE = 2  # of the displacements

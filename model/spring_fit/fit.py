@@ -17,12 +17,13 @@ from scipy.optimize import OptimizeResult
 
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case.case import Case
+from coilset.model.case.material import case_law
 from coilset.model.manufacture.initial_state import relief_intervals
 from coilset.model.spring_fit.intervals import THRESHOLD, Interval, correlation, intervals, limit, minimum
 from coilset.model.spring_fit.laws import CONSTANTS, Form
 from coilset.model.spring_fit.model import TESTER, Errors, Model, names
 from coilset.model.spring_fit.pressing import Pressing
-from coilset.model.standards.wires.law import case_law, softening
+from coilset.model.standards.wires.law import softening
 from coilset.model.uniform_coil.equivalent import coil
 
 ROUNDS = 10

@@ -6,8 +6,8 @@ import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case import Case
+from coilset.model.material.law.steel import STEEL
 from coilset.model.standards.rate import WireNumbers
-from coilset.model.standards.wires.steel import STEEL
 
 SEATING = 0.5  # EN 13906-1: seating coefficient ν of ends guided by parallel seats
 TILTING = {0: SEATING, 1: 0.7, 2: 1.0}  # ν by the number of ends that tilt freely; Euler's columns

@@ -8,6 +8,7 @@ from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.case import Case
 from coilset.model.case.loading import is_turned, pulls, rotations, torques
+from coilset.model.case.material import case_elastic, case_law
 from coilset.model.case.targets import check_travel
 from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.cylinder import Cylinder
@@ -16,7 +17,7 @@ from coilset.model.standards.from_results import Found
 from coilset.model.standards.rate import OnPoint, hook_stress, tails_compliance
 from coilset.model.standards.sheet import Sheet, pulled_lengths, working_lengths
 from coilset.model.standards.wires import wire
-from coilset.model.standards.wires.law import case_elastic, case_law, warm_elastic
+from coilset.model.standards.wires.law import warm_elastic
 
 
 def case_sheet(

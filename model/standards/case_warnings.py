@@ -8,9 +8,11 @@ from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.case import SectionSpec
 from coilset.model.case.loading import is_pressed
+from coilset.model.case.material import case_elastic
 from coilset.model.case.phases import TimePhase
 from coilset.model.material.law.law import Law
 from coilset.model.material.law.own import OwnLaw
+from coilset.model.material.law.steel import Elastic
 from coilset.model.standards import en13906
 from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.case_sheet import case_sheet
@@ -18,8 +20,6 @@ from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.sheet import Sheet, working_lengths
 from coilset.model.standards.spring_warnings import spring_warnings
 from coilset.model.standards.wires import wire
-from coilset.model.standards.wires.law import case_elastic
-from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE
 from coilset.model.standards.working_warnings import (
     endurance_warnings,

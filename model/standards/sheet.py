@@ -7,12 +7,12 @@ from math import degrees
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
+from coilset.model.material.law.steel import Elastic
 from coilset.model.standards import en13906, en15800, goodman
 from coilset.model.standards.buckling import SEATING
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.from_results import Found
 from coilset.model.standards.rate import OnPoint
-from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import Wire
 
 AT_BLOCK = 0.01  # of the wire diameter: a run closer than this to the block length of the geometry reached block

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
+from coilset.model.material.law.steel import STEEL, Elastic
 from coilset.model.standards import en13906
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.rate import WireNumbers, torsion_rate
-from coilset.model.standards.wires.steel import STEEL, Elastic
 
 SAME = 1e-9  # maximum relative change of coil and wire diameter along a cylinder
 Row = tuple[str, str, str]

@@ -7,8 +7,8 @@ import numpy as np
 from coilset.meshes.springs.checks import TOUCH, coil_distances
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.warning import Warning
+from coilset.model.material.law.steel import STEEL, Elastic
 from coilset.model.standards.buckling import SEATING, buckling_travel
-from coilset.model.standards.wires.steel import STEEL, Elastic
 
 INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
 WIRE_USUAL = (0.07, 20.0)  # mm; EN 15800, table 1 and, from 16 mm on, annex A

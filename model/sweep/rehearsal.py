@@ -9,8 +9,8 @@ from typing import Any
 from coilset.model.base.entry import shown
 from coilset.model.base.errors import InputError
 from coilset.model.case import Case
+from coilset.model.case.material import case_law
 from coilset.model.case.targets import check_steps, check_targets
-from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.spec import SweepSpec, Values
 
 

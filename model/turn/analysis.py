@@ -12,6 +12,7 @@ from mpi4py import MPI
 from coilset.meshes.solid import SectionGrid, coil_section
 from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case, check
+from coilset.model.case.material import case_law
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
 from coilset.model.equilibrium.path.free_ends import END_COIL, mean_rotation, nearest_rotation
 from coilset.model.results.records.record import Snapshot, Step
@@ -22,7 +23,6 @@ from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
 from coilset.model.solid.program import AxialProgram
 from coilset.model.solid.sampling import SectionSample
-from coilset.model.standards.wires.law import case_law
 
 MOST_TURNS = 5.0
 GRID = SectionGrid(2, 2)

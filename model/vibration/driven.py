@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.base.errors import InputError
+from coilset.model.case.material import case_elastic
 from coilset.model.contact.base import LEVEL
 from coilset.model.equilibrium.system.heads import AXIAL
 from coilset.model.run.analysis import Analysis
-from coilset.model.standards.wires.law import case_elastic
 from coilset.model.vibration.lift import Lift
 from coilset.model.vibration.surge import SPECTRAL_RADIUS, Energies, Motion
 

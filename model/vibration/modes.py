@@ -13,6 +13,7 @@ from petsc4py import PETSc
 from slepc4py import SLEPc
 
 from coilset.model.base.errors import SolveError
+from coilset.model.case.material import case_elastic
 from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.system.factors import lu
 from coilset.model.equilibrium.system.layout import LineLayout
@@ -21,7 +22,6 @@ from coilset.model.equilibrium.system.matrix import TangentMatrix
 from coilset.model.equilibrium.system.system import System
 from coilset.model.rod.rod import Rod
 from coilset.model.run.analysis import Analysis
-from coilset.model.standards.wires.law import case_elastic
 from coilset.model.vibration.mass import TONNE, Mass
 
 TOLERANCE = 1e-10  # of K φ − λ M φ, relative to λ

@@ -10,11 +10,11 @@ from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import CoilsetError, InputError, naming
 from coilset.model.case import UnloadedCase, read_case
 from coilset.model.case.loading import is_pressed, is_turned
+from coilset.model.case.material import case_elastic, case_law
 from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
 from coilset.model.standards.buckling import seating_of
 from coilset.model.standards.spring_data import spring_data
 from coilset.model.standards.spring_warnings import spring_warnings
-from coilset.model.standards.wires.law import case_elastic, case_law
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
 

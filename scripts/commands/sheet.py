@@ -15,6 +15,7 @@ from coilset.model.base.errors import InputError, naming
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case, UnloadedCase, read_case
 from coilset.model.case.loading import is_pressed
+from coilset.model.case.material import case_law
 from coilset.model.figures.panels.goodman import goodman as diagram_of
 from coilset.model.figures.png import write_png
 from coilset.model.report.document.words import Language, Words
@@ -28,7 +29,6 @@ from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.spring_warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
-from coilset.model.standards.wires.law import case_law
 from coilset.model.standards.wires.library import files, own_folder
 from coilset.model.standards.wires.wire_file import Surface
 from coilset.model.standards.wires.words import WIRE_COLUMNS, described, table_row

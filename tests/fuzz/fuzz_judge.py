@@ -19,6 +19,7 @@ from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.base.yaml import load_yaml, read_data
 from coilset.model.case import Case, check
 from coilset.model.case import read_case as case_of
+from coilset.model.case.material import case_law
 from coilset.model.case.targets import check_targets
 from coilset.model.design.file import DesignFile, read_design_file
 from coilset.model.material import library, programs
@@ -34,7 +35,6 @@ from coilset.model.run.build import build_wire
 from coilset.model.run.effort import Effort
 from coilset.model.spring_fit.pressing import read_pressing
 from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import SweepSpec

@@ -11,6 +11,7 @@ from mpi4py import MPI
 
 from coilset.model.base.warning import Warning
 from coilset.model.case import read_case
+from coilset.model.case.material import case_law
 from coilset.model.material.creep.entries import CreepTests
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.records.record import Result, Step
@@ -19,7 +20,6 @@ from coilset.model.results.records.warnings import accuracy_warning, run_warning
 from coilset.model.run.analysis import Analysis
 from coilset.model.section import surface
 from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.wires.law import case_law
 from coilset.scripts.commands.solve import solve
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.material.law.steel import STEEL
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.rate import torsion_rate
 from coilset.model.standards.spring_data import spring_data
-from coilset.model.standards.wires.steel import STEEL
 
 G = 81500.0
 

@@ -13,6 +13,7 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError
 from coilset.model.case import UnloadedCase, check
+from coilset.model.case.material import case_law
 from coilset.model.report.document.diagrams import diagrams
 from coilset.model.run.load_history import LoadHistory
 from coilset.model.standards.buckling import buckling_travel
@@ -21,7 +22,6 @@ from coilset.model.standards.case_warnings import case_warnings, sheet_warnings
 from coilset.model.standards.from_results import Found
 from coilset.model.standards.rows import sections
 from coilset.model.standards.spring_warnings import spring_warnings
-from coilset.model.standards.wires.law import case_law
 
 HOOK = {"shape": "german", "length": 18.6}
 PULLED = {

@@ -11,6 +11,7 @@ import xarray as xr
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
+from coilset.model.case.material import case_law
 from coilset.model.standards import en15800, from_results, goodman
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.case_warnings import case_warnings
@@ -18,7 +19,6 @@ from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import names, wire
-from coilset.model.standards.wires.law import case_law
 from coilset.model.standards.working_warnings import stress_warnings
 from coilset.scripts.commands.sheet import Options, list_wires, sheet
 

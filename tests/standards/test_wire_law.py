@@ -5,9 +5,10 @@ import pytest
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
+from coilset.model.case.material import case_law
 from coilset.model.material.point.points import initial_state, update
 from coilset.model.standards.wires import wire
-from coilset.model.standards.wires.law import case_law, wire_law
+from coilset.model.standards.wires.law import wire_law
 from coilset.model.sweep.keys import Keys
 
 

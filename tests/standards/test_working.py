@@ -8,12 +8,12 @@ import pytest
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
 from coilset.model.base.warning import Warning
+from coilset.model.material.law.steel import STEEL, Elastic
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.from_results import Found
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import wire
-from coilset.model.standards.wires.steel import STEEL, Elastic
 from coilset.model.standards.working_warnings import gap_warnings, presetting_warning, stress_warnings
 
 SPEC = {

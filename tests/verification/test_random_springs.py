@@ -3,10 +3,10 @@
 import pytest
 
 from coilset.model.case import check
+from coilset.model.case.material import case_law
 from coilset.model.case.targets import check_targets
 from coilset.model.material import library
 from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.wires.law import case_law
 from coilset.verification.random_springs.springs import FAMILIES, features, random_spring
 
 NUMBERS = range(84)

@@ -12,10 +12,10 @@ from typing import Any, TypeVar
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
+from coilset.model.case.material import case_law
 from coilset.model.case.targets import check_targets
 from coilset.model.material import library
 from coilset.model.standards.wires import names as wire_names
-from coilset.model.standards.wires.law import case_law
 
 FAMILIES = ("cylinder", "cone", "barrel", "hourglass", "double cone", "variable pitch", "variable wire")
 WIRE, INDEX, TURNS = (0.3, 14.0), (3.0, 20.0), (2.0, 12.0)  # mm, D/d, turns

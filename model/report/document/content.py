@@ -6,9 +6,9 @@ from typing import Any
 
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.case import Case
-from coilset.model.case.sheet import SheetSpec
 from coilset.model.figures.panels.panel import Panel
 from coilset.model.report.document.diagrams import diagrams
+from coilset.model.report.document.entries import SheetSpec
 from coilset.model.report.document.view import Drawing, Level, view
 from coilset.model.report.document.words import Words
 from coilset.model.results.files.opened import is_turned

@@ -10,7 +10,7 @@ from coilset.model.base.content import described
 from coilset.model.base.errors import InputError
 from coilset.model.base.version import __version__, versions
 from coilset.model.case import Case
-from coilset.model.standards.wires.law import case_law
+from coilset.model.case.material import case_law
 
 DIGEST_BYTES = 16
 

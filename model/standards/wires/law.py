@@ -3,15 +3,12 @@
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.case import Case
-from coilset.model.case.loading import is_pressed
-from coilset.model.case.targets import check_known
-from coilset.model.material import library
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import CELSIUS, Law
+from coilset.model.material.law.steel import Elastic
 from coilset.model.standards.wires.certificate import saturating
 from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
-from coilset.model.standards.wires.steel import STEEL, Elastic
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE, Wire
 
 SLOPE_RANGE = (233.15, 473.15)  # K, in which the slope of G is used: an estimate, no source gives its range
@@ -123,48 +120,6 @@ def softening(case: Case, law: Law, temperature: float) -> list[tuple[float, flo
     if known.entry.shear_modulus_decrease is None or not SLOPE_RANGE[0] <= temperature < hot:
         return []
     return [(hot, _softened(known, hot) / _softened(known, temperature))]
-
-
-def case_law(case: Case, spring: Spring) -> Law:
-    """The law of a case's material: from the library, from a file, or of a wire by its name and the spring's wire.
-
-    Raises:
-        InputError: an unknown material or wire, a wrong file, or a wire whose diameter is not constant.
-    """
-    spin = case.mesh.section.spin
-    if isinstance(case.material, str):
-        return library.load(case.material, spin=spin)
-    return wire_law(case.material.wire, wire_diameter(spring), spin, case.temperature)
-
-
-def case_elastic(case: Case, law: Law) -> Elastic:
-    """Moduli of a case's material at the temperature of its spring, and the density of steel.
-
-    Raises:
-        InputError: a temperature outside the material's table.
-    """
-    if isinstance(case.material, str):
-        check_known(law, case.temperature, "temperature")
-    E, G = law.moduli(law.reference_temperature if case.temperature is None else case.temperature)
-    return Elastic(float(G), float(E), STEEL.density)
-
-
-def case_strength(case: Case, spring: Spring) -> float | None:
-    """Tensile strength Rm of a case's wire, MPa: its standard's minimum, or that of a material file; else None."""
-    if isinstance(case.material, str):
-        return library.load(case.material).data.tensile_strength
-    return wire(case.material.wire).strength(wire_diameter(spring))
-
-
-def case_allowed(case: Case, spring: Spring) -> tuple[float | None, str]:
-    """Shear stress allowed at block for a case's wire, MPa, and which stress it limits.
-
-    None without such a wire, and of a spring that is no compression spring.
-    """
-    if isinstance(case.material, str) or not is_pressed(case, spring):
-        return None, ""
-    known = wire(case.material.wire)
-    return known.block_stress(wire_diameter(spring)), known.entry.block_stress.of
 
 
 def wire_diameter(spring: Spring) -> float:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from coilset.model.base.errors import InputError
-from coilset.model.standards.wires.steel import Elastic
+from coilset.model.material.law.steel import Elastic
 from coilset.model.standards.wires.wire_file import Endurance, Sourced, WireEntry
 
 ROOM_TEMPERATURE = 293.15  # K

@@ -16,10 +16,10 @@ import xarray as xr
 from scipy import stats
 
 from coilset.model.case import check
+from coilset.model.case.material import case_elastic, case_law
 from coilset.model.results.limits import case_limits
 from coilset.model.results.records.record import Limit
 from coilset.model.results.records.units import quantity
-from coilset.model.standards.wires.law import case_elastic, case_law
 from coilset.model.sweep.multifidelity import LEVEL, ControlVariate, slope
 
 ENOUGH = 8  # cases
