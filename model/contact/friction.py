@@ -243,7 +243,6 @@ class CoilFriction(Friction):
         )
 
 
-@njit(**COMPILED)
 def frictions(friction: Any, contacts: list[Contact], stations: np.ndarray, seats: np.ndarray) -> list[Contact]:
     """Friction of some of the contacts.
 
@@ -264,6 +263,7 @@ def frictions(friction: Any, contacts: list[Contact], stations: np.ndarray, seat
     return found
 
 
+@njit(**COMPILED)
 def _within(t: Triple, limit: float) -> Triple:
     """Shorten t to the cone."""
     size = np.sqrt(dot(t, t))

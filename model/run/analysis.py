@@ -4,13 +4,15 @@ from collections.abc import Callable
 
 from mpi4py import MPI
 
+from coilset.model.base.package import package
 from coilset.model.case import Case
 from coilset.model.equilibrium.path.step_sizes import StepSizes
 from coilset.model.material.law.law import Law
 from coilset.model.results.records.record import Result, Step
-from coilset.model.run.error_estimates import estimated
 from coilset.model.run.load_history import FurtherContacts, LoadHistory, Save
-from coilset.model.run.working import working_states
+
+# The doors to what a case asks for beyond its load program.
+ESTIMATES, WORKING = "coilset.model.run.error_estimates", "coilset.model.run.working"
 
 
 class Analysis(LoadHistory):
@@ -34,7 +36,9 @@ class Analysis(LoadHistory):
         steps: type[StepSizes] = StepSizes,
     ) -> None:
         super().__init__(case, comm, detailed, threads, law, contacts, steps)
-        self._estimates = estimates and case.steps_error is not None and contacts is None
+        wanted = estimates and case.steps_error is not None and contacts is None
+        self._estimated = package(ESTIMATES, "an estimate of errors", "accuracy").estimated if wanted else None
+        self._working = package(WORKING, "a working state", "working").working_states if case.working else None
 
     def run(
         self,
@@ -44,6 +48,7 @@ class Analysis(LoadHistory):
     ) -> Result:
         """The load program, as `LoadHistory.run`, then the working states and the errors; collective."""
         super().run(report, save, touched)
-        self.recorder.add_working(working_states(self))
-        self.recorder.end(estimated(self) if self._estimates and self.result.steps else self.result)
+        if self._working is not None:
+            self.recorder.add_working(self._working(self))
+        self.recorder.end(self.result if self._estimated is None or not self.result.steps else self._estimated(self))
         return self.result

@@ -27,7 +27,6 @@ from coilset.model.equilibrium.newton.newton import Newton
 from coilset.model.equilibrium.path.branch_switching import Branches
 from coilset.model.equilibrium.path.continuation import Continuation
 from coilset.model.equilibrium.path.stability import Stability
-from coilset.model.equilibrium.path.step_error import StepError
 from coilset.model.equilibrium.system.heads import Heads, Holding
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
@@ -44,6 +43,7 @@ from coilset.model.standards.buckling import buckling_travel, seating_of
 from coilset.model.standards.case_warnings import case_warnings
 
 # The doors to what not every spring has.
+STEP_ERROR = "coilset.model.equilibrium.path.step_error"
 HEAT, PAST = "coilset.model.rod.heat", "coilset.model.manufacture.initial_state"
 OUTLINED, LEVER = "coilset.model.section.outlined_section", "coilset.model.equilibrium.system.lever"
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
@@ -202,7 +202,9 @@ def build_continuation(
     steps, accuracy = case.solver.control.steps, case.steps_error
     if not newton.system.is_symmetric:
         steps = replace(steps, largest=min(steps.largest, steps.largest_with_friction))
-    error = None if accuracy is None else StepError(control, accuracy, steps)
+    error = None
+    if accuracy is not None:
+        error = package(STEP_ERROR, "an estimate of errors", "accuracy").StepError(control, accuracy, steps)
     return Continuation(
         newton, steps, _deepest(case, least_radius), branches=partial(Branches, stability), step_error=error
     )
