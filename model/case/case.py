@@ -370,7 +370,7 @@ class Case(Strict):
     ] = None
     endurance: Annotated[
         Any,
-        Entry("coilset.model.case.endurance:EnduranceSpec"),
+        Entry("coilset.model.fatigue.entries:EnduranceSpec"),
         Field(description="fatigue strength of the wire, for its life between the outermost working states"),
     ] = None
     force_line: Annotated[

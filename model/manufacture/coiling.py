@@ -22,10 +22,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.base.errors import SolveError
+from coilset.model.manufacture.wire import Wire
 from coilset.model.material.law.loop import AnyLaw
 from coilset.model.material.point.loops import with_loop
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.wire import BEND, TWIST, Wire
+from coilset.model.section.sections import BEND, TWIST
 
 LOADING, RELEASE, TWISTS = 40, 4, 4  # increments
 FREE = np.array([0, 1, 2, 4])  # ε, γ12, γ13, κ2 follow while the wire is bent and twisted

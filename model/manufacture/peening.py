@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.base.warning import Warning
+from coilset.model.manufacture.wire import Wire
 from coilset.model.material.law.loop import AnyLaw
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.wire import Wire
 
 INCREMENTS = 20
 RINGS = 3  # in a layer, below which its stress is badly resolved

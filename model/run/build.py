@@ -31,8 +31,7 @@ from coilset.model.equilibrium.system.heads import Heads, Holding
 from coilset.model.equilibrium.system.layout import LineLayout
 from coilset.model.equilibrium.system.system import System
 from coilset.model.material.law.law import Law
-from coilset.model.results.limits import case_limits
-from coilset.model.results.records.record import ContactRecord, ForceLine, Limits, Setup
+from coilset.model.results.records.record import ContactRecord, ForceLine, Limit, Limits, Setup
 from coilset.model.rod.elements import ELEMENTS
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.triads import chord_triads
@@ -44,6 +43,7 @@ from coilset.model.standards.case_warnings import case_warnings
 
 # The doors to what not every spring has.
 STEP_ERROR = "coilset.model.equilibrium.path.step_error"
+LIMITS = "coilset.model.results.limits"
 HEAT, PAST = "coilset.model.rod.heat", "coilset.model.manufacture.initial_state"
 OUTLINED, LEVER = "coilset.model.section.outlined_section", "coilset.model.equilibrium.system.lever"
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
@@ -232,6 +232,9 @@ def build_setup(
     )
     warnings = (*case_warnings(case, spring, law), *past[1], *wire.warnings)
     elastic = case_elastic(case, law)
+    bounds: tuple[Limit, ...] = ()
+    if case.limits:
+        bounds = package(LIMITS, "a limit", "limits").case_limits(case, spring, elastic.shear_modulus)
     ratio = elastic.shear_modulus / elastic.young_modulus
     buckling = buckling_travel(spring, ratio, seating_of(case)) if is_pressed(case, spring) else math.inf
     return Setup(
@@ -254,7 +257,7 @@ def build_setup(
         warnings=warnings,
         coiling_diameter=past[0],
         force_line=build_force_line(case),
-        bounds=case_limits(case, spring, elastic.shear_modulus),
+        bounds=bounds,
         initial_tension=getattr(case.spring, "initial_tension", None) or 0.0,
         strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
     )

@@ -17,6 +17,7 @@ from coilset.model.body.state import State
 from coilset.model.case import Case
 from coilset.model.case.material import case_law
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
+from coilset.model.case.stages import stage_of
 from coilset.model.case.targets import check_own_law, check_steps, check_targets, check_times, check_working
 from coilset.model.contact.base import Contact
 from coilset.model.contact.build import build_contacts, seats_at
@@ -43,7 +44,6 @@ from coilset.model.run.build import (
     build_wire,
 )
 from coilset.model.run.recorder import Recorder
-from coilset.model.run.stages import stage_of
 
 log = logging.getLogger("coilset.steps")
 FurtherContacts = Callable[[WirePoints, np.ndarray], Sequence[Contact]]

@@ -17,9 +17,8 @@ from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.integration import FIBRES, section
 from coilset.model.section.rules import DiskRule, rim
-from coilset.model.section.sections import Sections
+from coilset.model.section.sections import BEND, Sections
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
-from coilset.model.section.wire import BEND
 
 OUTLINES = "coilset.model.section.ground"  # the door to sections that are no disks
 

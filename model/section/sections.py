@@ -10,6 +10,8 @@ from coilset.meshes.springs.placement import Placement
 from coilset.model.material.point.over_step import LawOverStep
 from coilset.model.runtime.threads import Threads
 
+TWIST, BEND = 3, 5  # φ′ and κ3 among the strains of a section
+
 
 class Sections(ABC):
     """The sections of a rod's elements: stress, section forces and tangents at given section strains.

@@ -13,9 +13,9 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case
 from coilset.model.case.material import case_law
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
+from coilset.model.case.stages import stage_of
 from coilset.model.case.targets import check_travel
 from coilset.model.results.records.releases import FREE
-from coilset.model.run.stages import stage_of
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.lattice import Lattice
 from coilset.model.slice.problem import Effort, SliceProblem

@@ -9,10 +9,10 @@ import numpy as np
 from coilset.meshes.springs.manufacture import Relief
 from coilset.model.manufacture.coiling import bent
 from coilset.model.manufacture.initial_state import relief_intervals
+from coilset.model.manufacture.wire import Wire
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.over_step import law_over_step
 from coilset.model.section.rules import polar, upper_half
-from coilset.model.section.wire import Wire
 from coilset.model.uniform_coil.rod import UniformState, unloaded
 
 INCREMENTS, INTERVALS, ATTEMPTS = 10, 4, 2

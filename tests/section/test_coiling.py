@@ -8,11 +8,11 @@ from scipy.integrate import solve_ivp
 
 from coilset.model.base.errors import SolveError
 from coilset.model.manufacture.coiling import bent, coil
+from coilset.model.manufacture.wire import Wire
 from coilset.model.material import library
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.point.points import initial_state
 from coilset.model.section.rules import polar
-from coilset.model.section.wire import Wire
 from coilset.verification.references.springback import Bar
 
 RADIUS = 2.5

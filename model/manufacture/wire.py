@@ -9,9 +9,9 @@ from coilset.model.material.law.loop import AnyLaw
 from coilset.model.material.point.loops import advance_points, with_loop
 from coilset.model.section.integration import section
 from coilset.model.section.rules import DiskRule, rim
+from coilset.model.section.sections import BEND, TWIST
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 
-TWIST, BEND = 3, 5  # φ′ and κ3
 LOCAL = 25
 
 
