@@ -9,7 +9,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.case.material import case_elastic
 from coilset.model.contact.base import LEVEL
 from coilset.model.equilibrium.system.heads import AXIAL
-from coilset.model.run.analysis import Analysis
+from coilset.model.vibration.at_rest import AtRest
 from coilset.model.vibration.lift import Lift
 from coilset.model.vibration.surge import SPECTRAL_RADIUS, Energies, Motion
 
@@ -78,7 +78,7 @@ class Driven:
 
 
 def driven(
-    analysis: Callable[[], Analysis],
+    analysis: Callable[[], AtRest],
     lift: Lift,
     step: float | None = None,
     seconds: float | None = None,
@@ -132,7 +132,7 @@ def _check(seconds: float, step: float, place: str) -> None:
 
 
 def surge(
-    analysis: Analysis,
+    analysis: AtRest,
     height: Callable[[float], float],
     seconds: float,
     step: float,
@@ -142,7 +142,7 @@ def surge(
     """Drive the top head of a spring over time, from its last equilibrium at rest; collective.
 
     Args:
-        analysis: Analysis after its load program.
+        analysis: the spring after its load program.
         height: between the heads or seats, mm, at a time, s; it should begin where the spring is.
         seconds: duration; step: Δt, s, cut where contacts require it.
         spectral_radius: ρ of `Motion`.

@@ -21,7 +21,7 @@ from coilset.model.equilibrium.system.load import Load
 from coilset.model.equilibrium.system.matrix import TangentMatrix
 from coilset.model.equilibrium.system.system import System
 from coilset.model.rod.rod import Rod
-from coilset.model.run.analysis import Analysis
+from coilset.model.vibration.at_rest import AtRest
 from coilset.model.vibration.mass import TONNE, Mass
 
 TOLERANCE = 1e-10  # of K φ − λ M φ, relative to λ
@@ -97,11 +97,11 @@ def natural_modes(system: System, load: Load, density: float, count: int = 10, g
     return Modes(np.sort(values)[:count], np.array(shapes), masses, total)
 
 
-def loaded_modes(analysis: Analysis, count: int = 10, glued: bool = False) -> Modes:
+def loaded_modes(analysis: AtRest, count: int = 10, glued: bool = False) -> Modes:
     """Modes of a spring at its last equilibrium; collective.
 
     Args:
-        analysis: Analysis of a spring.
+        analysis: of the spring.
         count, glued: as for `natural_modes`.
 
     Raises:
