@@ -60,7 +60,7 @@ def read_lift(path: str | Path) -> Lift:
     Raises:
         InputError: if it cannot be read, or its numbers have no meaning.
     """
-    table = read_columns(path)
+    table = read_columns(path).named({"time_s": "s", "travel_mm": "mm"})
     for name in ("time_s", "travel_mm"):
         if name not in table.names:
             raise table.lacks(name, COLUMNS)

@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
+from coilset.meshes.section_shapes import Curve
+from coilset.meshes.springs.measured import read_centre_line
 from coilset.model.base.columns import read_columns
 from coilset.model.base.errors import InputError
+from coilset.model.material.identification.experiments import read_test
+from coilset.model.material.identification.relaxation_tests import read_relaxation
+from coilset.model.material.law.hardening_curves import read_table
+from coilset.model.vibration.lift import read_lift
 
 
 def test_comments_a_byte_order_mark_and_line_endings_of_spreadsheets(tmp_path):
@@ -53,6 +59,37 @@ def test_other_units_and_names_are_left(tmp_path):
     assert table.names == ("force [MPa]", "forces", "travel_mm", "y")
     with pytest.raises(InputError, match="line 2, column travel_mm: 'x' is not a number"):
         table.numbers("travel_mm")
+
+
+def _helix():
+    turns = np.linspace(0.0, 2.0, 65)
+    places = 10.0 * np.cos(2.0 * np.pi * turns), 10.0 * np.sin(2.0 * np.pi * turns), 5.0 * turns
+    return "X,Y,Z\n" + "".join(f"{x:.6f},{y:.6f},{z:.6f}\n" for x, y, z in zip(*places, strict=True))
+
+
+PULLED = "".join(f"{1e-4 * k:g},{206000e-4 * k:g}\n" for k in range(1, 31))
+READERS = {
+    "centre line": (lambda path: read_centre_line(path)[0], _helix()),
+    "section": (lambda path: Curve.read(path).points, "xi,eta\n-1,-1\n1,-1\n1,1\n-1,1\n"),
+    "motion": (lambda path: [read_lift(path).travel(0.5)], "Time_s,Travel_mm\n0,0\n0.5,2\n1,0\n"),
+    "tensile test": (lambda path: read_test(path).strain, f"Strain,Stress\n{PULLED}"),
+    "hardening": (read_table, "STRAIN,STRESS\n0,400\n0.01,500\n"),
+    "relaxation": (
+        lambda path: read_relaxation(path, points=True).loss,
+        "Temperature,Loss,shear_stress\n373,1,700\n423,2.7,700\n423,4.5,900\n473,5.5,700\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_comments_and_capitals_in_every_table(tmp_path, name):
+    read, text = READERS[name]
+    path = tmp_path / "table.csv"
+    path.write_text(text, encoding="utf-8")
+    plain = np.array(read(path))
+    path.write_text("# of lot 7\n" + text.replace("\n", '\n # checked, "by hand\n"# twice"\n'), encoding="utf-8")
+    np.testing.assert_array_equal(read(path), plain)
+    assert plain.size
 
 
 def test_spaces_after_the_commas(tmp_path):

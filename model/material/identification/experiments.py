@@ -50,7 +50,7 @@ class Test:
 def read_test(path: str | Path, engineering: bool = False) -> Test:
     """Read a test from a CSV file.
 
-    Lines at the top that begin with # are comments. Of the columns, eps11, gamma12 (1) and sigma11, tau12 (N/mm²) are
+    Lines that begin with # are comments. Of the columns, eps11, gamma12 (1) and sigma11, tau12 (N/mm²) are
     read; a tension test needs only two, strain and stress, or eps11 and sigma11. The first row is the unloaded start or
     the first reading after it.
 
@@ -63,7 +63,7 @@ def read_test(path: str | Path, engineering: bool = False) -> Test:
     Raises:
         InputError: if the file cannot be read, or a column or a number is missing or wrong.
     """
-    table = read_columns(path)
+    table = read_columns(path).named(dict.fromkeys((*COLUMNS, *PLAIN.values()), ""))
     names = {name: name if name in table.names else PLAIN.get(name, name) for name in COLUMNS}
     sheared = any(name in table.names for name in SHEAR)
     missing = [name for name in COLUMNS if names[name] not in table.names and (sheared or name not in SHEAR)]

@@ -49,7 +49,7 @@ def read_relaxation(path: str | Path, points: bool = False, per_force: float | N
     Raises:
         InputError: if the file cannot be read, or a column or a number is missing or wrong.
     """
-    table = read_columns(path)
+    table = read_columns(path).named(dict.fromkeys((*NEEDED, *STRESSES, FORCE), ""))
     kinds = STRESSES if per_force is None else {FORCE: "torsion"}
     given = [name for name in kinds if name in table.names]
     needed = [name for name in NEEDED if not (points and name == "hours")]

@@ -221,12 +221,12 @@ AnyCurve = Swift | Voce | RambergOsgood | Table
 
 
 def read_table(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
-    """Columns strain and stress of a CSV file; lines at its top that begin with # are comments.
+    """Columns strain and stress of a CSV file; lines that begin with # are comments.
 
     Raises:
         InputError: if it cannot be read, or a column or a number is missing or wrong.
     """
-    table = read_columns(path)
+    table = read_columns(path).named({"strain": "", "stress": ""})
     for name in ("strain", "stress"):
         if name not in table.names:
             raise table.lacks(name, "strain and stress (N/mm²)")
