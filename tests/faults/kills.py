@@ -3,12 +3,13 @@
     scripts/coilset python tests/faults/kills.py --kills 100
     scripts/coilset python tests/faults/kills.py --kills 30 --springs 7 43 58 106 194 25
 
-A small spring with contact and friction, on one and on two ranks, a sweep, and a search for a design; with `--springs`
-the random springs of these numbers instead, with fewer section points than usual. Each is killed
-(`kill -9`) again and again, at a random moment after something new was kept, until it comes to its end; then it begins
-anew. Says how often each was killed, what differed, and how many processes were left; exits 1 if there is anything of
-either. Where two runs that nobody disturbs differ, as on two ranks where MUMPS adds what arrives first, numbers are to
-agree to `AGREEMENT`, and how often was iterated does not count.
+A small spring with contact and friction, on one and on two ranks, one that is run again finer, a sweep, a search for a
+design, a nest and a page; with `--springs` the random springs of these numbers instead, with fewer section points than
+usual. Each is killed (`kill -9`) again and again, at a random moment after something new was kept, until it comes to
+its end; then it begins anew. What keeps nothing is killed at any moment, and begins from the start. Says how often each
+was killed, what differed, files that were left unfinished, and how many processes were left; exits 1 if there is
+anything of these. Where two runs that nobody disturbs differ, as on two ranks where MUMPS adds what arrives first,
+numbers are to agree to `AGREEMENT`, and how often was iterated does not count.
 """
 
 import argparse
@@ -23,6 +24,7 @@ import sys
 import tempfile
 import time
 import uuid
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -52,19 +54,41 @@ loading:
 find: {loading.0.to.height: [18, 34], spring.wire_diameter: [4.5, 5.5]}
 such_that: {free_length_after_mm: 25.0, force_at: {height: 21.0, N: 160.0}}
 """
+FINER = """
+spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}
+mesh: {section: {radial: 4, angular: 12}}
+loading: [{to: block}, {to: {force: 0}}]
+"""
+OF_NEST = """
+spring: {wire_diameter: DIAMETER, mean_diameter: MEAN, turns: 3.5, pitch: 8.0, hand: HAND}
+mesh: {elements_per_turn: 8, section: {rule: abramowitz9}}
+accuracy: 0.1
+loading: [{to: block}]
+"""
+NEST = """
+outer: {case: outer.yaml}
+inner: {case: inner.yaml}
+loading: [{to: {height: 20}, steps: 8}]
+"""
 JOURNALS = {"sweep": "journal.jsonl", "design": "evaluations.jsonl"}  # a line for each case
 LONGEST = 0.5  # seconds after something was kept, at most, in which the kill comes
 AGREEMENT = 1e-9  # of a quantity's largest magnitude, and absolutely, in N, mm and MPa
 COUNTED = ("iterations", "evaluations", "failed_solves")  # work that takes another way where bits differ
+MOST = 2  # kills before an end, of what keeps nothing and would never come to it
 WAIT = 120.0  # seconds for something to be kept
 FEWER = {"section": {"kind": "curved", "radial": 3, "angular": 12}}  # of the random springs
 SPRING = "random spring "  # with its number, the name of a run
 COMMANDS = {
     "solve": ["solve", "case.yaml", "--no-pictures", "--out", "out"],
     "solve on 2 ranks": ["-n", "2", "solve", "case.yaml", "--no-pictures", "--out", "out"],
+    "finer run": ["solve", "finer.yaml", "--no-pictures", "--out", "out"],
     "sweep": ["sweep", "sweep.yaml", "--no-pictures", "--jobs", "2", "--out", "out"],
     "design": ["design", "design.yaml", "--out", "out"],
+    "nest": ["nest", "nest.yaml", "--no-pictures", "--out", "out"],
+    "page": ["report", "out"],
 }
+AGAIN = {"nest": ["--overwrite"], "page": []}  # after a kill, of those that keep nothing; the others take --resume
+PAGE = "report.html"
 
 
 class Running:
@@ -108,49 +132,64 @@ class Running:
 
 
 def kept(folder: Path) -> tuple[float, int]:
-    """When the state was kept last, and how long the journal is; zeros if nothing was kept."""
-    state, journals = folder / "out" / "checkpoint" / "state.npz", (folder / "out" / name for name in JOURNALS.values())
-    size = sum(journal.stat().st_size for journal in journals if journal.exists())
-    return (state.stat().st_mtime if state.exists() else 0.0, size)
+    """When a state was kept last, and how long the journal is; zeros if nothing was kept."""
+    states = [state.stat().st_mtime for state in (folder / "out").glob("checkpoint*/state.npz")]
+    journals = (folder / "out" / name for name in JOURNALS.values())
+    return max(states, default=0.0), sum(journal.stat().st_size for journal in journals if journal.exists())
 
 
-def to_the_end(name: str, folder: Path, kills: int, left: list[int]) -> int:
-    """Run a command to its end with at most so many kills; how many there were."""
+def wait_for_news(running: Running, folder: Path, before: tuple[float, int]) -> None:
+    """Until something new was kept, and up to `LONGEST` more."""
+    until = time.monotonic() + WAIT
+    while running.process.poll() is None and kept(folder) == before and time.monotonic() < until:
+        time.sleep(0.005)
+    time.sleep(random.uniform(0.0, LONGEST))
+
+
+def to_the_end(name: str, folder: Path, kills: int, left: list[int], usual: float = 0.0) -> int:
+    """Run a command, which usually takes so many seconds, to its end with at most so many kills; how many there were."""
     begun, count = False, 0
     while True:
         before = kept(folder)
-        running = Running([*words(name), *(["--resume"] if begun else [])], folder)
-        until = time.monotonic() + WAIT
-        while running.process.poll() is None and kept(folder) == before and time.monotonic() < until:
-            time.sleep(0.005)
-        if count < kills:
-            time.sleep(random.uniform(0.0, LONGEST))
-        else:
+        running = Running([*words(name), *(AGAIN.get(name, ["--resume"]) if begun else [])], folder)
+        if count >= kills:
             running.process.wait()
+        elif name in AGAIN:
+            time.sleep(random.uniform(0.0, usual))
+        else:
+            wait_for_news(running, folder, before)
         if running.process.poll() is not None:
             if running.process.returncode:
                 raise RuntimeError((folder / "said.txt").read_text()[-2000:])
             return count
         left += running.kill()
-        count, begun = count + 1, any(kept(folder))
+        count, begun = count + 1, name in AGAIN or any(kept(folder))
+        if (page := folder / "out" / PAGE).exists() and not page.read_text().rstrip().endswith("</html>"):
+            raise RuntimeError(f"{page} is not whole")
 
 
 def found(name: str, folder: Path) -> dict[str, object]:
     """What a run has found, without times and dates."""
     out = folder / "out"
+    unfinished = {path.name: "left" for path in out.rglob(".*partial*")}
+    if name == "page":
+        return unfinished | {PAGE: (out / PAGE).read_text(encoding="utf-8")}
     if name in JOURNALS:
         records = [json.loads(line) for line in (out / JOURNALS[name]).read_text().splitlines()]
         cases = {one["key"]: {entry: value for entry, value in one.items() if entry != "seconds"} for one in records}
-        return cases | ({"found": (out / "found.yaml").read_text()} if name == "design" else {})
-    tables = {}
-    for path in ("history.csv", "seats.csv"):
-        with open(out / path, encoding="utf-8") as file:
+        return unfinished | cases | ({"found": (out / "found.yaml").read_text()} if name == "design" else {})
+    arrays = {}
+    for path in sorted(out.rglob("*.csv")):
+        with open(path, encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
-        tables |= {f"{path} {column}": np.array([float(row[column] or "nan") for row in rows]) for column in rows[0]}
+        of = path.relative_to(out)
+        arrays |= {f"{of} {column}": np.array([float(row[column] or "nan") for row in rows]) for column in rows[0]}
+    for path in sorted(out.glob("checkpoint*/state.npz")):
+        with np.load(path) as state:
+            arrays[f"{path.parent.name} state"] = state["state"]
     summary = json.loads((out / "summary.json").read_text())
-    with np.load(out / "checkpoint" / "state.npz") as state:
-        numbers = state["state"]
-    return {**tables, "state": numbers, **{entry: value for entry, value in summary.items() if entry != "origin"}}
+    own = {entry: value for entry, value in summary.items() if entry not in ("origin", "outer", "inner")}
+    return {**unfinished, **arrays, **own}
 
 
 def differing(wanted: dict[str, object], now: dict[str, object], to_the_bit: bool) -> set[str]:
@@ -183,10 +222,56 @@ def fresh(folder: Path, name: str = "") -> Path:
         case = random_spring(int(name.removeprefix(SPRING))) | {"mesh": FEWER}
         (folder / "case.yaml").write_text(yaml.safe_dump(case))
         return folder
-    (folder / "case.yaml").write_text(CASE)
-    (folder / "sweep.yaml").write_text(SWEEP)
-    (folder / "design.yaml").write_text(DESIGN)
+    inner, outer = (
+        OF_NEST.replace("DIAMETER", diameter).replace("MEAN", mean).replace("HAND", hand)
+        for diameter, mean, hand in (("3.0", "24.0", "left"), ("4.0", "36.0", "right"))
+    )
+    for file, text in zip(
+        ("case", "sweep", "design", "finer", "nest", "inner", "outer"),
+        (CASE, SWEEP, DESIGN, FINER, NEST, inner, outer),
+        strict=True,
+    ):
+        (folder / f"{file}.yaml").write_text(text)
+    if name == "page":  # the same results each time, as their date is on it
+        if not (solved := folder.parent / "solved").exists():
+            to_the_end("solve", fresh(solved), 0, [])
+        shutil.copytree(solved / "out", folder / "out")
     return folder
+
+
+@dataclass
+class Tried:
+    """What killing a command has shown.
+
+    Attributes:
+        kills, ends: how often it was killed, and came to its end.
+        unlike: names of what differs from an undisturbed run.
+        left: processes that outlived it.
+        to_the_bit: whether undisturbed runs agree to the bit, so that killed ones are to do so, too.
+    """
+
+    kills: int = 0
+    ends: int = 0
+    unlike: set[str] = field(default_factory=set)
+    left: list[int] = field(default_factory=list)
+    to_the_bit: bool = True
+
+
+def tried(name: str, kills: int, place: Path, compared: bool = True) -> Tried:
+    """Kill a command so many times; `compared`: run it twice undisturbed first, to see whether bits differ then."""
+    undisturbed, outcome = fresh(place / "undisturbed", name), Tried()
+    made = time.monotonic()
+    to_the_end(name, undisturbed, 0, [])
+    wanted, usual = found(name, undisturbed), time.monotonic() - made
+    if compared:
+        to_the_end(name, fresh(place / "again", name), 0, [])
+        outcome.to_the_bit = not differing(wanted, found(name, place / "again"), True)
+    while outcome.kills < kills:
+        folder, most = fresh(place / "killed", name), kills - outcome.kills
+        outcome.kills += to_the_end(name, folder, min(most, MOST) if name in AGAIN else most, outcome.left, usual)
+        outcome.ends += 1
+        outcome.unlike |= differing(wanted, found(name, folder), outcome.to_the_bit)
+    return outcome
 
 
 def main() -> int:
@@ -203,22 +288,12 @@ def main() -> int:
     bad, each = False, -(-options.kills // len(chosen))
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as place:
         for name in chosen:
-            undisturbed = fresh(Path(place) / "undisturbed", name)
-            to_the_end(name, undisturbed, 0, [])
-            wanted = found(name, undisturbed)
-            to_the_end(name, fresh(Path(place) / "again", name), 0, [])
-            to_the_bit = not differing(wanted, found(name, Path(place) / "again"), True)
-            count, ends, left, unlike = 0, 0, [], set()
-            while count < each:
-                folder = fresh(Path(place) / "killed", name)
-                count += to_the_end(name, folder, each - count, left)
-                now, ends = found(name, folder), ends + 1
-                unlike |= differing(wanted, now, to_the_bit)
-            bad = bad or bool(unlike or left)
-            kind = "to the bit" if to_the_bit else f"to {AGREEMENT:g}, as undisturbed runs differ"
+            outcome = tried(name, each, Path(place))
+            bad = bad or bool(outcome.unlike or outcome.left)
+            kind = "to the bit" if outcome.to_the_bit else f"to {AGREEMENT:g}, as undisturbed runs differ"
             print(
-                f"{name}: {count} kills, {ends} times to the end; compared {kind}; differing: "
-                f"{sorted(unlike) or 'nothing'}; processes left: {len(left)}",
+                f"{name}: {outcome.kills} kills, {outcome.ends} times to the end; compared {kind}; differing: "
+                f"{sorted(outcome.unlike) or 'nothing'}; processes left: {len(outcome.left)}",
                 flush=True,
             )
     return int(bad)

@@ -1,8 +1,10 @@
-"""What compares killed runs sees what differs; springs are killed by kills.py, by command, and in test_resume.py."""
+"""What compares killed runs sees what differs, and some are killed; more by kills.py and in test_resume.py."""
+
+import random
 
 import numpy as np
 import pytest
-from kills import differing
+from kills import differing, tried
 
 FOUND = {
     "state_x": np.array([1.0, 100.0]),
@@ -36,3 +38,12 @@ def test_differences_are_seen(name, value, to_the_bit, nearly):
     assert differing(FOUND, now, True) == ({name} if to_the_bit else set())
     assert differing(FOUND, now, False) == ({name} if nearly else set())
     assert differing(now, dict(now), True) == set()
+
+
+@pytest.mark.parametrize("name", ["finer run", "nest", "page"])
+def test_a_killed_command_goes_on_as_if_undisturbed(name, tmp_path):
+    random.seed(name)
+    outcome = tried(name, 1, tmp_path, compared=False)
+    assert outcome.kills == 1
+    assert not outcome.unlike
+    assert not outcome.left
