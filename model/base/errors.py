@@ -4,6 +4,8 @@ import contextlib
 from collections.abc import Iterator
 from typing import Any
 
+LONGEST_REASON = 200  # characters
+
 
 def printable(text: str) -> str:
     """A line with unprintable and control characters escaped; names of files may contain any."""
@@ -44,12 +46,17 @@ def reading(file: object) -> Iterator[None]:
     except CoilsetError:
         raise
     except Exception as error:
-        reason = str(error).partition("\n")[0] or type(error).__name__
-        if isinstance(error, KeyError):  # a name, or what a library says of one
-            reason = reason.strip("'\"").partition(". ")[0] if " " in reason else f"{reason} is missing"
-        elif isinstance(error, TypeError | AttributeError):  # whose words are about objects of the program
-            reason = "it is damaged, or was written by another version of coilset"
-        raise InputError(f"is not readable: {reason}", "", file) from error
+        raise InputError(f"is not readable: {reason(error)}", "", file) from error
+
+
+def reason(error: Exception) -> str:
+    """Why a file cannot be read, from a reader's exception, which may repeat its bytes: a line of limited length."""
+    if isinstance(error, TypeError | AttributeError):  # whose words are about objects of the program
+        return "it is damaged, or was written by another version of coilset"
+    said = printable(str(error).partition("\n")[0]) or type(error).__name__
+    if isinstance(error, KeyError):  # a name, or what a library says of one
+        said = said.strip("'\"").partition(". ")[0] if " " in said else f"{said} is missing"
+    return said if len(said) <= LONGEST_REASON else f"{said[:LONGEST_REASON]} ..."
 
 
 @contextlib.contextmanager

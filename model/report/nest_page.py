@@ -18,6 +18,7 @@ from coilset.model.nest.output import STEPS, characteristic
 from coilset.model.report.answer import Number
 from coilset.model.report.page import made_with, write_report
 from coilset.model.report.render import NAME, write_page
+from coilset.model.results.files.folder import subfolder
 from coilset.model.results.files.opened import Run, open_run
 from coilset.model.results.records.labels import within
 
@@ -46,7 +47,8 @@ def write_nest_report(folder: str | Path) -> Path:
     runs = {name: open_run(folder / name) for name, one in springs.items() if one is not None}
     if not runs:
         raise InputError("neither spring was reached by the seats", "", folder)
-    for run in runs.values():
+    for name, run in runs.items():
+        subfolder(folder, name)
         write_report(run)
     top = int(np.argmax(np.abs(columns["force_N"])))
     shares = {name: columns[f"{name}_force_N"][top] / (columns["force_N"][top] or 1.0) for name in NAMES}

@@ -129,8 +129,9 @@ def read(folder: str | Path) -> Found:
         InputError: if it contains no readable summary or history.
     """
     folder = Path(folder)
-    if not (folder / "summary.json").is_file():
-        raise InputError("holds no results of a run: there is no summary.json", "", folder)
+    for name in ("summary.json", "history.csv"):
+        if not (folder / name).is_file():
+            raise InputError(f"holds no results of a run: there is no {name}", "", folder)
     with reading(folder / "summary.json"):
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     history = read_columns(folder / "history.csv")

@@ -1,6 +1,7 @@
 """How inputs are combined: grids of their values, or samples of the unit cube mapped to their distributions."""
 
 import itertools
+import math
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,8 @@ import numpy as np
 from coilset.model.base.errors import InputError
 from coilset.model.sweep.packed import Row, Rows
 from coilset.model.sweep.spec import SweepSpec
+
+MOST = 10_000_000  # cases of a grid, whose rows take a gigabyte
 
 
 def rows(spec: SweepSpec, base: Any) -> Rows:
@@ -39,6 +42,8 @@ def _grid(name: str, vary: Any) -> list[Any]:
 def _combine(spec: SweepSpec, columns: Any, base: Any) -> list[Row]:
     names = list(spec.vary)
     if spec.design == "grid":
+        if (cases := math.prod(len(column) for column in columns)) > MOST:
+            raise InputError(f"its grid has {cases:,} cases; give fewer values, or a sampling design", "vary")
         return list(itertools.product(*columns))
     if spec.design == "together":
         lengths = {name: len(column) for name, column in zip(names, columns, strict=True)}

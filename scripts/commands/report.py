@@ -11,6 +11,7 @@ from coilset.model.design.opened import read_design
 from coilset.model.report import design_page, nest_page, sweep_page
 from coilset.model.report.page import write_report
 from coilset.model.report.render import NAME
+from coilset.model.results.files.folder import subfolder
 from coilset.model.results.files.opened import open_run
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.console import Console
@@ -50,8 +51,9 @@ def _solve_found(folder: Path) -> None:
         if design_page.found_run(folder, design) is not None:
             return
     Console().say(f"solving {folder / 'found.yaml'} for its characteristic")
+    found = subfolder(folder, design_page.FOUND)
     with contextlib.suppress(SolveError):  # the page shows it
-        solve(folder / "found.yaml", folder / design_page.FOUND, True, [], comm=MPI.COMM_SELF, voice="quiet")
+        solve(folder / "found.yaml", found, True, [], comm=MPI.COMM_SELF, voice="quiet")
 
 
 def _check(folder: Path) -> None:

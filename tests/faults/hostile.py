@@ -26,6 +26,7 @@ from coilset.model.base.errors import CoilsetError
 from coilset.model.case import check, read_case
 from coilset.model.design.file import read_design_file
 from coilset.model.material import library, programs
+from coilset.model.material.identification.experiments import read_test
 from coilset.model.nest.file import read_nest
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.files.labelled import labelled
@@ -35,7 +36,10 @@ from coilset.model.standards.from_results import read as read_results
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.vibration.lift import read_lift
+from coilset.model.vibration.loaded import after_results
+from coilset.scripts.commands.report import report
 from coilset.scripts.commands.solve import solve
+from coilset.verification.comparison import compare
 
 SPRING = "spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}\n"
 CASE = SPRING + "material: elastic\nloading: [{to: {travel: 1}, steps: 2}]\naccuracy: none\nends: clamped\n"
@@ -103,6 +107,37 @@ def of_results(change: Callable[[dict], object]) -> Callable[[Path], None]:
     return write
 
 
+def claiming_points(folder: Path) -> None:
+    """points.nc with an array that claims to be long, of which nothing is stored."""
+    with h5py.File(folder / "points.nc", "a") as file:
+        file.create_dataset("long", (10**10,), "f8")
+
+
+def pipe(name: str) -> Callable[[Path], None]:
+    """A pipe that nobody writes to in place of a file."""
+
+    def write(folder: Path) -> None:
+        (folder / name).unlink()
+        os.mkfifo(folder / name)
+
+    return write
+
+
+def linked_spring(folder: Path) -> None:
+    """The folder of a nest, whose outer spring is a link to results elsewhere."""
+    for name in ("summary.json", "points.nc", "history.csv", "seats.csv"):
+        (folder / name).rename(folder / "private" / name)
+    spring = json.loads((folder / "private" / "summary.json").read_text())
+    summary = {"clearance_min_mm": 1.0, "warnings": [], "outer": spring, "inner": None}
+    (folder / "summary.json").write_text(json.dumps(summary))
+    (folder / "nest.csv").write_text("step,seat_height_mm,force_N,outer_force_N,inner_force_N\n1,34,40,40,0\n")
+    (folder / "outer").symlink_to("private")
+
+
+def scripted(summary: dict) -> None:
+    summary["set_mm"] = "<script>alert(1)</script>"
+
+
 def evil_options(summary: dict) -> None:
     summary["origin"]["case"]["solver"]["options"] = {"pc_type": "python", "pc_python_type": "evil.py:Evil"}
 
@@ -110,6 +145,8 @@ def evil_options(summary: dict) -> None:
 MOUTHS: dict[str, Callable[[Path], object]] = {
     "case": lambda folder: Analysis(read_case(folder / "case.yaml"), MPI.COMM_SELF),
     "measured": lambda folder: read_centre_line(folder / "measured.csv"),
+    "test": lambda folder: read_test(folder / "test.csv"),
+    "compare": lambda folder: compare(folder, folder / "out"),
     "material": lambda folder: library.load(folder / "own.yaml"),
     "program": lambda folder: programs.read(folder / "program.yaml"),
     "sweep": lambda folder: Plan(folder / "sweep.yaml"),
@@ -121,9 +158,12 @@ MOUTHS: dict[str, Callable[[Path], object]] = {
     "results": lambda folder: check(open_run(folder).case, folder / "case"),
     "page": lambda folder: labelled(folder),
     "sheet": lambda folder: read_results(folder),
+    "modes": lambda folder: after_results(folder),
+    "report": lambda folder: report(folder),
     "solve": lambda folder: solve(folder / "case.yaml", folder, True, [], voice="quiet"),
 }
-OF_RESULTS = ("resume", "results", "page", "sheet", "solve")  # mouths that read a results folder
+OF_RESULTS = ("resume", "results", "page", "sheet", "modes", "report", "solve")  # mouths that read a results folder
+WRITES = ("report", "solve")
 
 
 @dataclass(frozen=True)
@@ -153,6 +193,20 @@ def _of_case(name: str, entries: str) -> dict[str, str]:
     return {name: entries, **case_with("")}
 
 
+NEST = "outer: {case: case.yaml}\ninner: {case: case.yaml}\nloading: [{to: block}]\n"
+DESIGN = json.dumps({"conditions": [], "found": {}, "origin": {"case": {}}})
+MATERIAL = """name: own
+description: a table
+source: somebody
+units: N, mm, K
+validity: {plastic_work: 100, remark: none}
+temperatures:
+  - temperature: 293.15
+    elasticity: {G: 79000, nu: 0.29}
+    isotropic: {law: table, file: curve.csv}
+    kinematic: none
+    non_normality: none
+"""
 _ALIASES = "".join(f"b{k}: &b{k} [{', '.join([f'*b{k - 1}'] * 10)}]\n" for k in range(1, 9))
 _POLYGLOT = SPRING + (
     'material: "ck15"\nloading: [{"to": {"travel": 5}, "steps": 2}]\naccuracy: "none"\n'
@@ -211,11 +265,16 @@ HOSTILE = [
     Hostile(
         "options in a spring of a nest",
         "nest",
-        {"nest.yaml": "outer: {case: case.yaml}\ninner: {case: case.yaml}\nloading: [{to: block}]\n"}
-        | case_with("pc_type: python"),
+        {"nest.yaml": NEST} | case_with("pc_type: python"),
         says="pc_type",
     ),
-    Hostile("options of a run, for its modes", "results", change=of_results(evil_options), says="pc_type"),
+    Hostile(
+        "options in what is compared",
+        "compare",
+        {"measured.csv": "quantity,value,error\nset_mm,1,1\n", **case_with("pc_type: python")},
+        says="pc_type",
+    ),
+    Hostile("options of a run, for its modes", "modes", change=of_results(evil_options), says="pc_type"),
     # YAML
     Hostile("a tag that calls a function", "case", _tag(f'!!python/object/apply:eval ["{TOUCH}"]'), says="tag"),
     Hostile("a tag that imports a module", "case", _tag("!!python/module:evil"), says="tag"),
@@ -256,12 +315,36 @@ HOSTILE = [
         | {"case.yaml": CASE.replace(SPRING, "spring: {file: own.csv}\n")},
         says="own.csv",
     ),
+    Hostile(
+        "an endless outline",
+        "case",
+        {"case.yaml": CASE.replace("wire_diameter: 5.0", "wire: {outline: own.csv}"), "own.csv": "-> /dev/zero"},
+        says="own.csv",
+    ),
+    Hostile(
+        "a thousand turns of a thousand elements",
+        "case",
+        {"case.yaml": CASE.replace("turns: 2.5", "turns: 9e9").replace("per_turn: 8", "per_turn: 9e9")},
+        says="turns",
+    ),
+    Hostile("a spring that is an endless file", "nest", {"nest.yaml": NEST, "case.yaml": "-> /dev/zero"}, says="2 MB"),
     # other files
+    Hostile("an endless test", "test", {"test.csv": "-> /dev/zero"}, says="longer than 100 MB"),
+    Hostile("a test of formulas", "test", {"test.csv": "strain,stress\n" + "=1+1,@SUM(1)\n" * 30}, says="not a number"),
+    Hostile("endless measurements", "compare", {"measured.csv": "-> /dev/zero", **case_with("")}, says="100 MB"),
     Hostile("an endless centre line", "measured", {"measured.csv": "-> /dev/zero"}, says="no such file"),
     Hostile("formulas as points", "measured", {"measured.csv": "x,y,z\n=1+1,@SUM(1),0\n"}, says="not a number"),
     Hostile("a NUL in a table", "measured", {"measured.csv": "x,y,z\n0,0,\0\n"}, says="measured.csv"),
     Hostile("a quotation without end", "measured", {"measured.csv": 'x,y,z\n"' + "0," * 100_000}, says="measured.csv"),
     Hostile("a material with a function", "material", {"own.yaml": "name: !!python/name:os.system\n"}, says="tag"),
+    *(
+        Hostile(f"{what} as a curve", "material", {"own.yaml": MATERIAL, "curve.csv": f"-> {file}"}, says=says)
+        for what, file, says in (
+            ("an endless file", "/dev/zero", "longer than 100 MB"),
+            ("a file of the system", "/etc/passwd", "curve.csv"),
+        )
+    ),
+    Hostile("stresses in Pa", "material", {"own.yaml": MATERIAL.replace("{G: 79000", "{G: 79e9")}, says="as in Pa"),
     Hostile("a law in Python", "material", {"own.yaml": "name: x\nlaw: evil.py\n", "evil.py": EVIL}, says="law"),
     Hostile(
         "a program with a tag", "program", {"program.yaml": f'- !!python/object/apply:eval ["{TOUCH}"]\n'}, says="tag"
@@ -277,6 +360,16 @@ HOSTILE = [
         "sweep",
         _of_case("sweep.yaml", "case: case.yaml\nvary: {spring.pitch: {from: 11, to: 13, count: 1000000000000}}\n"),
         says="count",
+    ),
+    Hostile(
+        "a grid of endless size",
+        "sweep",
+        _of_case(
+            "sweep.yaml",
+            "case: case.yaml\ndesign: grid\nvary: {spring.pitch: {from: 11, to: 13, count: 1000000}, "
+            "spring.turns: {from: 2, to: 3, count: 1000000}}\n",
+        ),
+        says="cases",
     ),
     Hostile("a sweep of itself", "sweep", {"sweep.yaml": "case: sweep.yaml\nvary: {a: {values: [1]}}\n"}, says="case"),
     Hostile(
@@ -307,6 +400,17 @@ HOSTILE = [
     Hostile("values of another file", "results", change=foreign("external"), says="in another file"),
     Hostile("a link to another file", "page", change=foreign("link"), says="is a link"),
     Hostile("values put together of another file", "results", change=foreign("virtual"), says="in another file"),
+    Hostile("an array of 80 GB that is not stored", "results", change=claiming_points, says="points.nc"),
+    Hostile("a history without end", "report", {"history.csv": "-> /dev/zero"}, says="there is no history.csv"),
+    *(
+        Hostile(f"a pipe for the {mouth}", mouth, change=pipe("history.csv"), says="there is no history.csv")
+        for mouth in ("report", "sheet")
+    ),
+    Hostile("a set that is a script", "report", change=of_results(scripted), says="is not readable"),
+    Hostile("a page that is a link", "report", {"report.html": f"-> {VICTIM}"}),
+    Hostile("an unfinished page that is a link", "report", {f".report.{16 * 'a'}.partial.html": f"-> {VICTIM}"}),
+    Hostile("a design whose results are linked", "report", {"design.json": DESIGN, "found": "-> private"}, says="link"),
+    Hostile("a nest whose spring is a link", "report", change=linked_spring, says="outer: is a link"),
     Hostile("a group in itself", "results", change=foreign("round"), says="is no array"),
     Hostile("another file for the sheet", "sheet", change=foreign("external"), says="in another file"),
     Hostile("points that are none", "sheet", {"points.nc": b"PK\3\4"}, says="points.nc"),
@@ -345,13 +449,17 @@ def put(attempt: Hostile, folder: Path, results: Path) -> None:
     attempt.change(folder)
 
 
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
 def attack(attempt: Hostile, folder: Path) -> str:
     """Have a folder read; the line that refuses it, empty if it was read as data.
 
     Raises:
         AssertionError: it did what it should not.
     """
-    here, before = os.getcwd(), set(folder.rglob("*"))
+    here, before, private = os.getcwd(), set(folder.rglob("*")), contents(folder / "private")
     os.chdir(folder)
     try:
         MOUTHS[attempt.mouth](folder)
@@ -362,11 +470,11 @@ def attack(attempt: Hostile, folder: Path) -> str:
         os.chdir(here)
     assert not (folder / PWNED).exists(), "ran code"
     assert (folder / VICTIM).read_text() == "mine", "overwrote a file"
-    assert sorted(path.read_text() for path in (folder / "private").iterdir()) == ["mine"] * 3, "reached another folder"
+    assert contents(folder / "private") == private, "reached another folder"
     assert "\n" not in line, "needed more than a line"
     assert bool(line) is bool(attempt.says), line or "was accepted"
     assert attempt.says in line, line
-    if attempt.mouth != "solve":
+    if attempt.mouth not in WRITES:
         assert set(folder.rglob("*")) == before, "wrote files"
     return line
 

@@ -147,7 +147,7 @@ def wait_for_news(running: Running, folder: Path, before: tuple[float, int]) -> 
 
 
 def to_the_end(name: str, folder: Path, kills: int, left: list[int], usual: float = 0.0) -> int:
-    """Run a command, which usually takes so many seconds, to its end with at most so many kills; how many there were."""
+    """Run a command, which takes its `usual` seconds, to its end with at most so many kills; how many there were."""
     begun, count = False, 0
     while True:
         before = kept(folder)

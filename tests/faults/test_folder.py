@@ -122,6 +122,13 @@ def flip(path):
     path.write_bytes(bytes(content))
 
 
+def lengthen_a_name(path):
+    """The first array's name in its archive has 272 letters, of which the reader repeats all; found by the fuzzer."""
+    content = bytearray(path.read_bytes())
+    content[27] = 1
+    path.write_bytes(bytes(content))
+
+
 def older(arrays):
     about = json.loads(str(arrays["about"]))
     del about["provenance"]
@@ -149,6 +156,7 @@ STATE, STEPS, SNAPSHOT = "state.npz", "steps.jsonl", "snapshot-00.npz"
 DAMAGES = {
     "truncated": (STATE, lambda path: path.write_bytes(path.read_bytes()[:-300])),
     "flipped": (STATE, flip),
+    "name without end": (STATE, lengthen_a_name),
     "empty": (STATE, lambda path: path.write_bytes(b"")),
     "array missing": (STATE, lambda path: rewrite_fields(path, lambda fields: fields.pop("x"))),
     "wrong shape": (STATE, lambda path: rewrite_fields(path, lambda fields: fields.update(x=np.zeros((3, 3))))),
@@ -185,6 +193,7 @@ def test_a_damaged_checkpoint_gets_one_line(example, folder, damage):
         resume(example, folder)
     assert "\n" not in str(caught.value)
     assert "--overwrite" in str(caught.value)
+    assert len(str(caught.value).replace(str(folder), "")) < 400
     assert not (folder / "summary.json").exists()
 
 

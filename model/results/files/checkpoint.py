@@ -12,7 +12,7 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.model.base.agreement import on_first_rank
-from coilset.model.base.errors import InputError
+from coilset.model.base.errors import InputError, reason
 from coilset.model.base.warning import Warning
 from coilset.model.body.body import Moment
 from coilset.model.body.state import State
@@ -129,8 +129,7 @@ class Checkpoint:
                 f"the checkpoint was written by another version of coilset, or is damaged; {ANEW}", "", path
             ) from None
         except Exception as error:
-            reason = str(error).partition("\n")[0] or type(error).__name__
-            raise InputError(f"the checkpoint is not readable: {reason}; {ANEW}", "", path) from None
+            raise InputError(f"the checkpoint is not readable: {reason(error)}; {ANEW}", "", path) from None
 
     def _result(self, about: Mapping[str, Any], of_mode: Mapping[str, np.ndarray]) -> Result:
         kept: dict[str, Any] = {name: values if values.ndim else float(values) for name, values in of_mode.items()}

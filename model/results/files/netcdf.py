@@ -14,6 +14,7 @@ from coilset.model.results.files.folder import whole
 if TYPE_CHECKING:  # slow to load
     from xarray import Dataset
 
+PACKED = 1000  # bytes of numbers for each of the file, at most, as zlib packs zeros
 HEADER = 1 << 20  # maximum number of bytes of a file besides its numbers
 
 
@@ -81,12 +82,14 @@ def read_netcdf(path: str | Path) -> Iterator["Dataset"]:
     """A NetCDF file as xarray's Dataset, whose values are read when they are used.
 
     Raises:
-        ValueError: if it takes values from other files, as HDF5 can. OSError: if it is no such file.
+        ValueError: if it takes values from other files, or repeats one that it does not store, as HDF5 can. OSError: if
+            it is no such file.
     """
     import h5py
     import xarray as xr
 
     with h5py.File(path) as file:
+        claimed = 0
         for name in file:
             if not isinstance(file.get(name, getlink=True), h5py.HardLink):
                 raise ValueError(f"{name} is a link")
@@ -95,6 +98,9 @@ def read_netcdf(path: str | Path) -> Iterator["Dataset"]:
                 raise ValueError(f"{name} is no array")
             if found.external or found.is_virtual:
                 raise ValueError(f"{name} has its values in another file")
+            claimed += found.nbytes
+    if claimed > PACKED * Path(path).stat().st_size:
+        raise ValueError(f"its arrays claim {claimed:,} bytes, more than it can hold")
     with xr.open_dataset(path, engine="h5netcdf") as data:
         yield data
 

@@ -72,7 +72,7 @@ def open_run(folder: str | Path) -> Run:
         InputError: if it holds no run, or a file cannot be read.
     """
     folder = Path(folder)
-    for name in ("summary.json", "points.nc"):
+    for name in ("summary.json", "points.nc", "history.csv", "seats.csv"):  # no pipes either, which never end
         if not (folder / name).is_file():
             within = min(folder.glob("*/points.nc"), default=None)  # of a nest's springs, or of runs in one folder
             hint = f"; is {within.parent} meant?" if within else ""
