@@ -164,6 +164,8 @@ def to_the_end(name: str, folder: Path, kills: int, left: list[int], usual: floa
             return count
         left += running.kill()
         count, begun = count + 1, name in AGAIN or any(kept(folder))
+        for partial in folder.rglob(".*partial*"):
+            os.utime(partial, (0, 0))  # as if some time had passed, after which others are not writing it
         if (page := folder / "out" / PAGE).exists() and not page.read_text().rstrip().endswith("</html>"):
             raise RuntimeError(f"{page} is not whole")
 

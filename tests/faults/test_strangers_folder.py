@@ -1,7 +1,9 @@
 """A results folder that somebody sent leads no command elsewhere: links in it are not written through."""
 
+import contextlib
 import json
 import os
+import time
 
 import pytest
 from mpi4py import MPI
@@ -39,24 +41,25 @@ def test_an_unfinished_file_has_no_name_that_can_be_foreseen(tmp_path, monkeypat
     assert [path.name for path in tmp_path.iterdir()] == ["report.html"]
 
 
-def test_links_of_names_of_unfinished_files_are_not_written_through(tmp_path, victim, monkeypatch):
-    """Of those that are there before they are removed, that which comes afterwards is an error."""
+@pytest.mark.parametrize("age", [0.0, 1e6])
+def test_a_link_of_the_name_of_an_unfinished_file_is_not_written_through(tmp_path, victim, monkeypatch, age):
+    """An old one is removed, as what a killed process has left; a new one is an error."""
     monkeypatch.setattr(folders.os, "urandom", bytes)
     link = tmp_path / f".report.{bytes(8).hex()}.partial.html"
     link.symlink_to(victim)
-    with whole(tmp_path / "report.html") as partial:
+    os.utime(link, (time.time() - age,) * 2, follow_symlinks=False)
+    refused = contextlib.nullcontext() if age else pytest.raises(CoilsetError, match="cannot be written: File exists")
+    with refused, whole(tmp_path / "report.html") as partial:
         partial.write_text("page")
-    monkeypatch.setattr(folders.os, "listdir", lambda _: link.symlink_to(victim) or [])
-    with pytest.raises(CoilsetError, match="cannot be written: File exists"), whole(tmp_path / "report.html"):
-        pass
     assert victim.read_text() == "mine"
 
 
-def left_of_a_killed_process(path):
-    """What lies beside `path` then."""
+def left_of_a_killed_process(path, age=1e6):
+    """What lies beside `path` then, for some seconds."""
     with whole(path) as partial:
         partial.write_text("whole")
     partial.write_text("half")
+    os.utime(partial, (time.time() - age,) * 2)
     return partial
 
 
@@ -70,20 +73,19 @@ def test_what_a_killed_process_left_goes_when_the_same_file_is_written(tmp_path)
 
 def test_what_others_are_writing_stays(tmp_path):
     """Two that write the same file at once: each is whole, and the last one is kept."""
-    left = left_of_a_killed_process(tmp_path / "report.html")
-    with whole(tmp_path / "other.html") as other:
-        other.write_text("other")
-        with whole(tmp_path / "report.html") as first:
-            first.write_text("first")
-            with whole(tmp_path / "report.html") as second:
-                second.write_text("second")
-            assert (tmp_path / "report.html").read_text() == "second"
-        assert left.exists()  # it may be of somebody who writes now
+    left = left_of_a_killed_process(tmp_path / "report.html", age=10.0)  # it may be of somebody who writes now
+    with whole(tmp_path / "report.html") as first:
+        first.write_text("first")
+        with whole(tmp_path / "report.html") as second:
+            second.write_text("second")
+        assert (tmp_path / "report.html").read_text() == "second"
     assert (tmp_path / "report.html").read_text() == "first"
+    assert left.exists()
 
 
 def test_a_folder_of_the_name_of_an_unfinished_file_is_in_nobodys_way(tmp_path):
-    left_of_a_killed_process(tmp_path / "report.html").with_name(f".report.{16 * '0'}.partial.html").mkdir()
+    (folder := tmp_path / f".report.{16 * '0'}.partial.html").mkdir()
+    os.utime(folder, (0, 0))
     with whole(tmp_path / "report.html") as partial:
         partial.write_text("page")
     assert (tmp_path / "report.html").read_text() == "page"

@@ -3,10 +3,10 @@
 import contextlib
 import csv
 import errno
-import fcntl
 import json
 import os
 import re
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
@@ -17,6 +17,7 @@ from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.results.records.record import SeatReactions, Step
 
 UNFINISHED = ".*.partial*"  # of a run that was killed, see `whole`
+LEFT = 60.0  # seconds without a byte more after which a partial file is one of a killed process
 RECORDS = (
     "summary.json",
     "history.csv",
@@ -55,24 +56,13 @@ def not_linked(path: str | Path, flags: int) -> int:
     return os.open(path, flags | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
 
 
-@contextlib.contextmanager
-def _sharing(path: Path) -> Iterator[None]:
-    """Share the lock of the folder with all who write files in it, so that none removes a file of another.
-
-    Partial files of `path` are removed first, if nobody writes in the folder: then all of them are of killed processes.
-    """
-    unfinished = re.compile(rf"\.{re.escape(path.stem)}\.[0-9a-f]{{16}}\.partial{re.escape(path.suffix)}")
-    folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    try:
-        with contextlib.suppress(OSError):  # others write in it, or the file system has no locks
-            fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            for name in filter(unfinished.fullmatch, os.listdir(folder)):
-                os.unlink(name, dir_fd=folder)
-        with contextlib.suppress(OSError):
-            fcntl.flock(folder, fcntl.LOCK_SH | fcntl.LOCK_NB)
-        yield
-    finally:
-        os.close(folder)
+def _remove_left(path: Path) -> None:
+    """Remove the partial files of `path` to which nobody has written for some time: those of killed processes."""
+    partial = re.compile(rf"\.{re.escape(path.stem)}\.[0-9a-f]{{16}}\.partial{re.escape(path.suffix)}")
+    with contextlib.suppress(OSError), os.scandir(path.parent) as entries:
+        for entry in entries:
+            if partial.fullmatch(entry.name) and entry.stat(follow_symlinks=False).st_mtime < time.time() - LEFT:
+                os.unlink(entry)
 
 
 @contextlib.contextmanager
@@ -88,13 +78,13 @@ def whole(path: str | Path) -> Iterator[Path]:
     path = Path(path)
     partial = path.with_name(f".{path.stem}.{os.urandom(8).hex()}.partial{path.suffix}")
     try:
-        with _sharing(path):
-            os.close(not_linked(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
-            yield partial
-            if not partial.exists() or not partial.stat().st_size:
-                # VTK reports nothing, and removes what it did not finish
-                raise OSError(errno.EIO, "nothing of it was written; is the disk full?")
-            os.replace(partial, path)
+        _remove_left(path)
+        os.close(not_linked(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL))
+        yield partial
+        if not partial.exists() or not partial.stat().st_size:
+            # VTK reports nothing, and removes what it did not finish
+            raise OSError(errno.EIO, "nothing of it was written; is the disk full?")
+        os.replace(partial, path)
     except OSError as error:
         raise CoilsetError(f"{path}: cannot be written: {error.strerror or error}") from None
     finally:
