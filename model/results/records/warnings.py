@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
-from math import isfinite
+from math import degrees, isfinite
 
 from coilset.model.base.warning import Warning
 from coilset.model.results.fatigue import fatigue_warnings
@@ -332,7 +332,7 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
     required, errors = setup.limits.accuracy, result.errors
     if required is None or errors is None:
         return
-    worst, words = dict[str, float](), list[str]()
+    worst, words, radius = dict[str, float](), list[str](), turned_radius(setup, result.steps)
     for name, allowed in allowed_errors(setup, result).items():
         error = getattr(errors.total, name)
         if error is None:
@@ -344,9 +344,11 @@ def _whole_error(setup: Setup, result: Result) -> Iterator[Warning]:
             return
         if error > allowed:
             worst[name] = required * error / allowed
-            is_force, turned = name == "force_N", is_turned(setup, result.steps)
-            percent = f"{apart(100 * worst[name], 100 * required)[0]} %"
-            size = percent if is_force or turned else f"{error:.2g} {unit_of(name)}"
+            is_force, size = name == "force_N", f"{error:.2g} {unit_of(name)}"
+            if is_force:
+                size = f"{apart(100 * worst[name], 100 * required)[0]} %"
+            elif radius:
+                size = f"{degrees(error / radius):.2g}°"
             words.append(f"{size} of the {force_in_words(setup, result) if is_force else NUMBERS[name]}")
     if worst:
         largest = max(worst, key=lambda name: worst[name])
