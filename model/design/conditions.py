@@ -10,7 +10,7 @@ from coilset.model.case.case import check
 from coilset.model.case.material import case_elastic, case_law
 from coilset.model.design.file import Conditions, DesignFile, Limits
 from coilset.model.results.limits import case_limits
-from coilset.model.results.records.units import quantity, unit_of
+from coilset.model.results.records.units import unit_of, words_and_unit
 from coilset.model.results.records.working import is_working_number, place_of
 
 GROUP = "such_that."  # before the names of conditions
@@ -55,7 +55,7 @@ class Condition:
     @property
     def words(self) -> str:
         """The result, for progress and messages."""
-        return quantity(self.short_name)[0] if self.height is None else f"force at {self.height:g} mm"
+        return words_and_unit(self.short_name)[0] if self.height is None else f"force at {self.height:g} mm"
 
     @property
     def wanted(self) -> str:

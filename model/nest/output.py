@@ -11,7 +11,7 @@ from coilset.model.figures.png import write_png
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.nest import Pressed
 from coilset.model.results.files.folder import RESULTS, clear, prepare, subfolder, write_summary, write_table
-from coilset.model.results.records.labels import plain, within
+from coilset.model.results.quantities import quantity
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
@@ -75,10 +75,8 @@ def write(folder: Path, pressed: Pressed, force: bool = False, pictures: bool = 
 
 def headline(found: Mapping[str, Any]) -> str:
     """Maximum force and set of a nest, of its summary."""
-    force, of_set = found.get("estimated_force_error_N"), found.get("estimated_set_error_mm")
-    size = f"{plain(found['force_max_N'], 5)} N" if force is None else within(found["force_max_N"], force, "N", 2)
-    lost = "" if found["set_mm"] is None else f", set {within(found['set_mm'], of_set, 'mm', 2)}"
-    return f"Maximum force {size}{lost}".replace("-", "−")
+    lost = "" if found["set_mm"] is None else f", set {quantity(found, 'set_mm').text}"
+    return f"Maximum force {quantity(found, 'force_max_N').text}{lost}".replace("-", "−")
 
 
 def characteristic(columns: Mapping[str, np.ndarray], found: Mapping[str, Any]) -> Panel:

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from coilset.model.figures.panels.panel import with_unit
-from coilset.model.results.files.opened import Run, is_turned
-from coilset.model.results.records.labels import held_matters, largest_errors, last_released, lives_text, within
-from coilset.model.results.records.units import quantity
+from coilset.model.results.files.opened import Run
+from coilset.model.results.quantities import Quantity, quantities
+from coilset.model.results.records.labels import lives_text, within
+from coilset.model.results.records.units import words_and_unit
 
 
 @dataclass(frozen=True)
@@ -42,141 +43,13 @@ def subtitle(run: Run) -> str:
 
 
 def answer(summary: Mapping[str, Any]) -> list[Number]:
-    """Set first, then the residual stress, forces and rates; of summary.json."""
-    s = summary
-    before, after = s["free_length_before_mm"], s["free_length_after_mm"]
-    share = (
-        f"{with_unit(100.0 * s['set_mm'] / before, '%', 1)} of the free length"
-        if s["set_mm"] is not None
-        else "the spring was not released"
-    )
-    if held_matters(s):
-        share += f", {with_unit(s['set_held_mm'], 'mm', 3)} while its ends are held"
-    if earlier := last_released(s):
-        share += f", at the last release, in step {earlier[0]} of {earlier[1]}"
-    inside = s["residual_shear_inside_MPa"]
-    turn = s.get("residual_shear_inside_turn")
-    at = "" if turn is None else f" at turn {turn:.2f}"
-    against = ""
-    if inside and round(
-        inside, 1
-    ):  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
-        against = "against the load" if inside * s["force_max_N"] < 0.0 else "with the load"
-    if is_turned(s):
-        return _turned(s)
-    return [
-        Number("set", _within(s["set_mm"], s.get("estimated_set_error_mm"), "mm", 3), share),
-        Number("free length", _within(after, s.get("estimated_set_error_mm"), "mm", 3), _lengths(s)),
-        Number(
-            "residual shear stress",
-            _within(inside, s.get("estimated_residual_shear_inside_error_MPa"), "MPa", 1),
-            f"inside of the coil{at}{', ' + against if against else ''}",
-        ),
-        *_greatest(s),
-        Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
-        *_tension(s),
-        Number(
-            "initial rate", _within(s["rate_N_per_mm"], s.get("estimated_rate_error_N_per_mm"), "N/mm", 3), _after(s)
-        ),
-        *([] if is_pulled(s) else [Number("block height", with_unit(s["block_height_mm"], "mm", 2))]),
-    ]
+    """The numbers of a run, the set first; of summary.json."""
+    return [number(one) for one in quantities(summary)]
 
 
-def _greatest(s: Mapping[str, Any]) -> list[Number]:
-    """The maximum force; where the load program gives it, the height under it, which is what was computed."""
-    if not s.get("force_max_is_given"):
-        force = _within(s["force_max_N"], s.get("estimated_force_error_N"), "N", 1)
-        return [Number("maximum force", force, _errors(s))]
-    height = _within(s["force_max_height_mm"], s["estimated_force_max_height_error_mm"], "mm", 3)
-    return [
-        Number("maximum force", with_unit(s["force_max_N"], "N", 1), "as given"),
-        Number("height under the maximum force", height, _errors(s)),
-    ]
-
-
-def is_pulled(s: Mapping[str, Any]) -> bool:
-    """Whether its greatest load pulls a spring; of summary.json."""
-    return bool(s["force_max_N"] < 0.0)
-
-
-def _tension(s: Mapping[str, Any]) -> list[Number]:
-    """Of a spring whose coils are wound onto each other."""
-    if s.get("initial_tension_N") is None:
-        return []
-    after = s["initial_tension_after_N"]
-    of_after = s.get("estimated_initial_tension_after_error_N")
-    given = "" if s.get("initial_tension_given_N") is None else f"wound with {s['initial_tension_given_N']:.5g} N"
-    left = "" if after is None else f"{_within(after, of_after, 'N', 1)} after the last release"
-    rate = with_unit(s["open_rate_N_per_mm"], "N/mm", 3)
-    of_first = s.get("estimated_initial_tension_error_N")
-    held = Number(
-        "initial tension", _within(s["initial_tension_N"], of_first, "N", 1), "; ".join(filter(None, (given, left)))
-    )
-    return [held, Number("rate, coils open", rate), *_beyond_coil(s, "hooks")]
-
-
-def _beyond_coil(s: Mapping[str, Any], name: str) -> list[Number]:
-    """The stress along the wire of hooks or arms, and what is left of it."""
-    stress, left = s.get("tail_stress_max_MPa"), s.get("residual_tail_stress_MPa")
-    if stress is None:
-        return []
-    words = ""
-    if left is not None and abs(left) >= 0.5:
-        words = f"{with_unit(left, 'MPa', 0)} after release, {'with' if left * stress > 0.0 else 'against'} the load"
-    return [Number(f"maximum stress along the wire, {name}", with_unit(stress, "MPa", 0), words)]
-
-
-def _turned(s: Mapping[str, Any]) -> list[Number]:
-    """Of a torsion spring: set in degrees first, then the residual bending stress, torque and rate."""
-    inside, outside = (with_unit(s[f"residual_bending_{side}_MPa"], "MPa", 1) for side in ("inside", "outside"))
-    rate = with_unit(s["turn_rate_Nmm_per_deg"], "N mm/°", 3)
-    after = s["turn_rate_after_Nmm_per_deg"]
-    of_set, of_torque = s.get("estimated_turn_set_error_deg"), s.get("estimated_torque_error_Nmm")
-    if s.get("torque_max_is_given"):
-        of_torque = None
-    return [
-        Number("set", _within(s["turn_set_deg"], of_set, "°", 2), f"of {s['turn_max_deg']:.4g}° of rotation"),
-        Number("residual bending stress", inside, f"inside of the coil; {outside} outside; positive in tension"),
-        Number("maximum torque", _within(s["torque_max_Nmm"], of_torque, "N mm", 0), _errors(s)),
-        Number(
-            "maximum bending stress",
-            with_unit(s["max_bending_inside_MPa"], "MPa", 0),
-            f"inside of the coil; {with_unit(s['max_bending_outside_MPa'], 'MPa', 0)} outside",
-        ),
-        Number("rate", rate, "" if after is None else f"{with_unit(after, 'N mm/°', 3)} on release"),
-        Number("inner diameter", with_unit(s["inner_diameter_min_mm"], "mm", 2), "smallest, for an arbor"),
-        *_beyond_coil(s, "arms"),
-    ]
-
-
-def release_lengths(summary: Mapping[str, Any]) -> list[float]:
-    """Free lengths after each release to zero force, mm; none where the summary does not list them."""
-    return [one["free_length_mm"] for one in summary.get("releases") or ()]
-
-
-def _lengths(summary: Mapping[str, Any]) -> str:
-    """The free length before, and after the releases before the last one."""
-    earlier = [f"{length:.3f} mm after release {k}" for k, length in enumerate(release_lengths(summary)[:-1], 1)]
-    between = f", {', '.join(earlier)}" if earlier else ""
-    after = "after the last release" if last_released(summary) else "after"
-    return f"{after}; {summary['free_length_before_mm']:.3f} mm before{between}"
-
-
-def _within(value: float | None, error: float | None, unit: str, digits: int) -> str:
-    return within(value, error, unit, digits).replace("-", "−")
-
-
-def _errors(summary: Mapping[str, Any]) -> str:
-    """What the errors behind ± are mostly caused by."""
-    turned = is_turned(summary)
-    if summary.get("estimated_torque_error_Nmm" if turned else "estimated_force_error_N") is None:
-        return "error not estimated"
-    return f"largest part of the errors ±: {largest_errors(summary.get('estimated_errors'), turned)}"
-
-
-def _after(summary: Mapping[str, Any]) -> str:
-    rate = summary["rate_30_70_after_N_per_mm"]
-    return "" if rate is None else f"{rate:.3f} N/mm on release, between 30 and 70 % of the travel"
+def number(one: Quantity) -> Number:
+    """A quantity as it is printed on a page."""
+    return Number(one.words, *(text.replace("-", "−") for text in (one.text, one.remark)))
 
 
 WORKING_HEADS = (
@@ -215,7 +88,7 @@ def lists(summary: Mapping[str, Any]) -> list[tuple[str, str, str, tuple[str, ..
 
 
 def _limit(limit: Mapping[str, Any]) -> list[str]:
-    words, unit = quantity(limit["name"])
+    words, unit = words_and_unit(limit["name"])
     words, value = f"{words}, {unit}" if unit else words, limit["value"]
     ends = [f"{limit[name]:.6g}" for name in ("low", "high")]
     if value is None:

@@ -13,10 +13,10 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.case import check
-from coilset.model.figures.panels.panel import with_unit
-from coilset.model.report.answer import answer, is_pulled, release_lengths
+from coilset.model.report.answer import answer
 from coilset.model.report.verdict import Check, checks, verdict
-from coilset.model.results.files.opened import Run, is_turned
+from coilset.model.results.files.opened import Run
+from coilset.model.results.quantities import quantity
 from coilset.model.results.records.labels import plain
 from coilset.model.standards.cylinder import Cylinder
 
@@ -80,33 +80,12 @@ def _span(values: np.ndarray) -> str:
 
 def results(summary: dict[str, Any]) -> list[tuple[str, str]]:
     """Names and values of the results of a run, of summary.json."""
-    s = summary
+    wound = quantity(summary, "free_length_before_mm")
     rows = [
-        ("material", s["material"]),
-        ("free length as wound", with_unit(s["free_length_before_mm"], "mm", 2, "")),
+        ("material", summary["material"]),
+        (wound.words, wound.text),
     ]
-    if is_turned(s):
-        return rows + [(one.term, f"{one.value} {one.remark}".strip()) for one in answer(s)]
-    rows += [
-        *_releases(s),
-        ("set", with_unit(s["set_mm"], "mm", 2, "")),
-        ("block height", "" if is_pulled(s) else with_unit(s["block_height_mm"], "mm", 2, "")),
-        ("maximum force", f"{plain(s['force_max_N'], 5)} N"),
-        ("height under it", with_unit(s["force_max_height_mm"], "mm", 2, "") if s.get("force_max_is_given") else ""),
-        ("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3, "")),
-        ("rate after release, 30 to 70 %", with_unit(s["rate_30_70_after_N_per_mm"], "N/mm", 3, "")),
-        ("maximum shear stress, inside", with_unit(s["shear_inside_max_MPa"], "MPa", 0, "")),
-        ("residual shear stress, inside", with_unit(s["residual_shear_inside_MPa"], "MPa", 1, "")),
-    ]
-    return [(name, text) for name, text in rows if text]
-
-
-def _releases(summary: dict[str, Any]) -> list[tuple[str, str]]:
-    """The free length after each release, where the summary lists them; else after the last one."""
-    lengths = release_lengths(summary)
-    if len(lengths) < 2:
-        return [("free length after release", with_unit(summary["free_length_after_mm"], "mm", 2, ""))]
-    return [(f"free length after release {k}", with_unit(length, "mm", 2, "")) for k, length in enumerate(lengths, 1)]
+    return rows + [(one.term, one.value) for one in answer(summary)]
 
 
 def _drawn(spring: Spring) -> str:

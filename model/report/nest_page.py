@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +16,15 @@ from coilset.model.figures.panels.spring_view import scene_of, shown_surface, su
 from coilset.model.figures.wire_surface import closed, frames, tubes
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.output import STEPS, characteristic
-from coilset.model.report.answer import Number
+from coilset.model.report.answer import Number, number
 from coilset.model.report.page import made_with, write_report
 from coilset.model.report.render import NAME, write_page
 from coilset.model.results.files.folder import subfolder
 from coilset.model.results.files.opened import Run, open_run
-from coilset.model.results.records.labels import within
+from coilset.model.results.quantities import quantity
 
 FILE = STEPS  # by which the folder of a nest is known
+STRESSES = ("shear_inside_max_MPa", "residual_shear_inside_MPa")
 RINGS = 320  # of a spring, at each moment
 STATES = ("free", "pressed the most", "released")
 
@@ -52,7 +54,6 @@ def write_nest_report(folder: str | Path) -> Path:
         write_report(run)
     top = int(np.argmax(np.abs(columns["force_N"])))
     shares = {name: columns[f"{name}_force_N"][top] / (columns["force_N"][top] or 1.0) for name in NAMES}
-    of_set = summary.get("estimated_set_error_mm")
     warnings = [one["message"] for one in summary["warnings"]]
     warnings += [f"{name} spring: {one['message']}" for name in runs for one in springs[name]["warnings"]]
     return write_page(
@@ -63,23 +64,16 @@ def write_nest_report(folder: str | Path) -> Path:
             ("The springs", [view(runs)]),
         ],
         {},
-        title=f"{folder.resolve().name}: set {_with_error(summary['set_mm'], of_set, 'mm', 3)}",
+        title=f"{folder.resolve().name}: set {number(quantity(summary, 'set_mm')).value}",
         subtitle=f"two springs between the same seats, pressed to {columns['seat_height_mm'].min():.4g} mm, released",
         answer=[
-            Number(
-                "set",
-                _with_error(summary["set_mm"], of_set, "mm", 3),
-                "of the height at which the seats touch the first spring",
+            replace(
+                number(quantity(summary, "set_mm")), remark="of the height at which the seats touch the first spring"
             ),
-            Number(
-                "free length",
-                _with_error(summary["free_length_after_mm"], of_set, "mm", 3),
-                f"after; {summary['free_length_before_mm']:.3f} mm before",
-            ),
-            Number(
-                "maximum force",
-                _with_error(summary["force_max_N"], summary.get("estimated_force_error_N"), "N", 2),
-                ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items()),
+            number(quantity(summary, "free_length_after_mm")),
+            replace(
+                number(quantity(summary, "force_max_N")),
+                remark=", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items()),
             ),
             Number(
                 "block height",
@@ -102,34 +96,19 @@ def _length(value: float | None, digits: int) -> str:
     return with_unit(value, "mm", digits, "not released")
 
 
-def _with_error(value: float | None, error: float | None, unit: str, digits: int) -> str:
-    return "not released" if value is None else within(value, error, unit, digits).replace("-", "−")
-
-
 def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: float) -> dict[str, Any]:
     """A row of the table of both springs, and the link to its page; of a spring that was not reached only its name."""
     if summary is None:
         return {"name": name, "link": "", "cells": ["not reached by the seats"] + [""] * 6}
-    inside, of_set, of_force, of_inside = (
-        summary.get(key)
-        for key in (
-            "residual_shear_inside_MPa",
-            "estimated_set_error_mm",
-            "estimated_force_error_N",
-            "estimated_residual_shear_inside_error_MPa",
-        )
-    )
+    own = (quantity(summary, one) for one in ("free_length_before_mm", "set_mm", *STRESSES))
     return {
         "name": name,
         "link": f"{name}/{NAME}",
         "cells": [
             summary["material"],
-            _with_error(force, of_force, "N", 2),
+            number(replace(quantity(summary, "force_max_N"), value=force)).value,
             f"{100.0 * share:.1f} %",
-            f"{summary['free_length_before_mm']:.3f} mm",
-            _with_error(summary["set_mm"], of_set, "mm", 3),
-            with_unit(summary["shear_inside_max_MPa"], "MPa"),
-            "–" if inside is None else _with_error(inside, of_inside, "MPa", 1),
+            *(number(one).value for one in own),
         ],
     }
 
@@ -155,17 +134,17 @@ def view(runs: Mapping[str, Run]) -> Panel:
     end = round_end(greatest)
     traces: list[Trace] = []
     for places, stress in shapes:
-        for number in range(len(STATES)):
+        for state in range(len(STATES)):
             traces.append(
                 {
                     **surface_trace(end),
-                    **shown_surface(places[number], stress[number]),
+                    **shown_surface(places[state], stress[state]),
                     "showscale": not traces,
-                    "meta": {"choice": number},
+                    "meta": {"choice": state},
                 }
             )
-    for number in range(len(STATES)):  # one scale for each state, of the outer spring, or of the only one
-        traces[number]["showscale"] = True
+    for state in range(len(STATES)):  # one scale for each state, of the outer spring, or of the only one
+        traces[state]["showscale"] = True
     corners = np.concatenate([places.reshape(-1, 3) for places, _ in shapes])
     low, high = corners.min(axis=0), corners.max(axis=0)
     return Panel(

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from coilset.model.results.files.opened import is_turned
+from coilset.model.results.loading import Loading, loading_of
 
 REMARKS = {"elastic warping", "estimate", "not determined", "earlier name", "presetting", "measured axis", "leans"}
 """Warnings that are no failed check."""
@@ -43,9 +43,12 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
     messages: dict[str, str] = {}
     for one in summary["warnings"]:
         messages.setdefault(one["name"], one["message"])
-    turned, pulled = is_turned(summary), summary.get("force_max_N", 0.0) < 0.0
+    loading = loading_of(summary)
+    turned = loading is Loading.TURNED
     cylinder = "" if has_formulas else "EN 13906-1 applies to cylinders of constant wire only"
-    cylinder = "EN 13906-1 applies to springs that are compressed only" if turned or pulled else cylinder
+    cylinder = (
+        "EN 13906-1 applies to springs that are compressed only" if loading is not Loading.COMPRESSED else cylinder
+    )
     unknown = "errors of torque and rotation are not estimated" if turned else ""
     # what a coarse contact curve changes is in the error by the mesh: the companion's is several times as far off
     coarse = messages.pop(COARSE, "")

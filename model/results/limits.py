@@ -11,7 +11,7 @@ from coilset.model.case import Case
 from coilset.model.case.limits import GRADE, About, AnyLimit
 from coilset.model.results.records.record import Limit
 from coilset.model.results.records.summary_entries import NUMBERS
-from coilset.model.results.records.units import quantity, without_unit
+from coilset.model.results.records.units import without_unit, words_and_unit
 from coilset.model.results.records.working import is_working_number, names_of, place_of
 from coilset.model.standards import en13906, en15800
 from coilset.model.standards.cylinder import Cylinder
@@ -102,7 +102,7 @@ def limit_warnings(entries: tuple[dict[str, Any], ...]) -> Iterator[Warning]:
     for entry in entries:
         if entry["met"]:
             continue
-        words, unit = quantity(entry["name"])
+        words, unit = words_and_unit(entry["name"])
         bounds = f"{entry['low']:.6g} to {entry['high']:.6g} {unit} ({entry['source']})"
         value = entry["value"]
         if value is None:

@@ -13,7 +13,7 @@ from coilset.model.case.names import entry_name
 from coilset.model.case.settings import located
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.netcdf import reserve
-from coilset.model.results.records.units import quantity
+from coilset.model.results.records.units import words_and_unit
 from coilset.model.sweep.journal import Records
 from coilset.model.sweep.keys import as_rod
 from coilset.model.sweep.parquet import corrects, responses_of, words_of_warnings
@@ -62,9 +62,15 @@ def collect(plan: Plan, folder: str | Path, most: int = MOST_CASES) -> xr.Datase
             warnings[at] = words_of_warnings(record)
     for column in responses.values():
         column[np.abs(column) < ROUNDING] = 0.0
-    data: dict[str, Any] = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
+    data: dict[str, Any] = {
+        name: ("case", column, _attributes(*words_and_unit(name))) for name, column in responses.items()
+    }
     data |= {
-        f"curve_{name}": (("case", "step"), _filled(curve, n), _attributes(*quantity(name)) | {"units": CURVE[name]})
+        f"curve_{name}": (
+            ("case", "step"),
+            _filled(curve, n),
+            _attributes(*words_and_unit(name)) | {"units": CURVE[name]},
+        )
         for name, curve in curves.items()
     }
     data |= {

@@ -19,7 +19,7 @@ import numpy as np
 from scipy import stats
 from scipy.optimize import isotonic_regression
 
-from coilset.model.results.records.units import quantity
+from coilset.model.results.records.units import words_and_unit
 from coilset.model.sweep.plan import Plan
 
 if TYPE_CHECKING:
@@ -193,7 +193,7 @@ def lines(plan: Plan, estimates_of: Callable[[str], ControlVariate]) -> Iterator
         except ValueError as error:
             yield f"  {error}"
             continue
-        words, unit = quantity(name)
+        words, unit = words_and_unit(name)
         found = {"mean": estimates.mean()} | {f"{100 * level:g} %": estimates.quantile(level) for level in QUANTILES}
         parts = (f"{word} {one.value:.5g} ({one.low:.5g} to {one.high:.5g})" for word, one in found.items())
         yield f"  {words}, {unit}, {len(estimates.rod):,} and {estimates.uniform:,}: {', '.join(parts)}"

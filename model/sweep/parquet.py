@@ -13,7 +13,7 @@ import numpy as np
 from coilset.model.base.version import versions
 from coilset.model.results.files.folder import whole
 from coilset.model.results.records.summary_entries import NUMBERS
-from coilset.model.results.records.units import quantity
+from coilset.model.results.records.units import words_and_unit
 from coilset.model.results.records.working import names_of
 from coilset.model.sweep.journal import Records
 from coilset.model.sweep.keys import as_rod
@@ -101,7 +101,7 @@ def _schema(pa: Any, plan: Plan) -> "pa.Schema":
     fields.append(pa.field("seconds", pa.float64(), metadata={"units": "s"}))
     for name in (*NUMBERS, *names_of(plan.base.get("working") or {})):
         column = f"{name}_found" if name in plan.names else name
-        words, unit = quantity(name)
+        words, unit = words_and_unit(name)
         fields.append(pa.field(column, pa.float64(), metadata={"units": unit, "long_name": words}))
     attributes = {"title": f"sweep {plan.path.stem}", "versions": versions(), "design": plan.spec.design}
     attributes |= {"inputs": json.dumps(plan.names), "cases": str(len(plan))}

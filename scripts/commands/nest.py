@@ -11,12 +11,22 @@ from coilset.model.nest import output
 from coilset.model.nest.file import read_nest
 from coilset.model.nest.nest import Pressed, press
 from coilset.model.results.files.folder import refuse_results
-from coilset.model.results.records.labels import within
+from coilset.model.results.quantities import quantity
+from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Step
 from coilset.model.runtime.threads import usual
 from coilset.scripts.terminal.console import Console
-from coilset.scripts.terminal.progress import quantity
 from coilset.scripts.terminal.target import results_folder
+
+SHOWN = (
+    "set_mm",
+    "free_length_before_mm",
+    "free_length_after_mm",
+    "block_height_mm",
+    "force_max_N",
+    "shear_inside_max_MPa",
+    "residual_shear_inside_MPa",
+)
 
 
 def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, threads: int | None = None) -> None:
@@ -42,22 +52,11 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
 def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder: Path) -> None:
     apart = (0, 2, 0, 0)  # its rows fit in 80 columns
     table = Table("", "nest", *(member.name for member in pressed.members), box=None, padding=apart)
-    rows = (
-        ("free length before", "free_length_before_mm", "", "mm", 4),
-        ("free length after", "free_length_after_mm", "estimated_set_error_mm", "mm", 4),
-        ("set", "set_mm", "estimated_set_error_mm", "mm", 4),
-        ("block", "block_height_mm", "", "mm", 4),
-        ("maximum force", "force_max_N", "estimated_force_error_N", "N", 2),
-    )
     columns = [found, *(found[member.name] or {} for member in pressed.members)]
-    for name, key, error, unit, digits in rows:
-        table.add_row(name, *(within(one.get(key), one.get(error), unit, digits) for one in columns))
-    key, error = "residual_shear_inside_MPa", "estimated_residual_shear_inside_error_MPa"
-    greatest = (quantity(one.get("shear_inside_max_MPa"), "MPa", 1) for one in columns[1:])
-    left = (within(one.get(key), one.get(error), "MPa", 1) for one in columns[1:])
-    table.add_row("shear inside, maximum", "", *greatest)
-    table.add_row("shear inside, residual", "", *left)
-    table.add_row("minimum clearance", quantity(found["clearance_min_mm"], "mm"), "", "")
+    for name in SHOWN:
+        words = quantity(found, name).words
+        table.add_row(words, *(quantity(one, name).text if name in one else "" for one in columns))
+    table.add_row("minimum clearance", f"{plain(found['clearance_min_mm'])} mm", "", "")
     console.print(table)
     for warning in pressed.warnings:
         console.warn(warning.message)

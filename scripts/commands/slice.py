@@ -12,12 +12,13 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case, read_case
 from coilset.model.results.files.folder import clear, prepare, write_history, write_summary
+from coilset.model.results.quantities import quantities
 from coilset.model.results.records.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.scripts.terminal.console import Console
-from coilset.scripts.terminal.progress import HEAD, quantity, step_row
+from coilset.scripts.terminal.progress import HEAD, step_row
 from coilset.scripts.terminal.target import results_folder
 
 NOTE = (
@@ -93,19 +94,7 @@ def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures
 
 
 def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
-    console.pairs(
-        [
-            ("free length before", quantity(summary["free_length_before_mm"], "mm")),
-            ("free length after", quantity(summary["free_length_after_mm"], "mm")),
-            ("set", quantity(summary["set_mm"], "mm")),
-            ("initial rate", quantity(summary["rate_N_per_mm"], "N/mm")),
-            ("maximum force", quantity(summary["force_max_N"], "N", 2)),
-            ("shear stress, inside of coil, loaded", quantity(summary["shear_inside_max_MPa"], "MPa", 2)),
-            ("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2)),
-            ("residual shear stress, inside of coil", quantity(summary["residual_shear_inside_MPa"], "MPa", 2)),
-        ],
-        bold="set",
-    )
+    console.quantities(quantities(summary))
     console.say(NOTE)
     console.say(f"  results in {out}{os.sep}", whole=True)
     for warning in summary["warnings"]:

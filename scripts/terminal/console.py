@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from coilset.model.base.errors import printable
+from coilset.model.results.quantities import Quantity
 
 ORDERS = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
@@ -82,6 +83,17 @@ class Console(console.Console):
         for row in rows:
             made.add_row(*row, style="bold" if row[0].startswith(bold) else "")
         self.print(made)
+
+    def quantities(self, ones: Iterable[Quantity]) -> None:
+        """Numbers of a run, a line each; a remark that does not fit into it follows on a line of its own."""
+        ones = list(ones)
+        width = max((len(one.words) for one in ones), default=0)
+        for one in ones:
+            line = f"  {one.words:<{width}}  {one.text}"
+            gap = "  " if len(line) + 2 + len(one.remark) <= self.width else "\n      "
+            remark = (f"{gap}{one.remark}", "dim") if one.remark else ""
+            style = "bold" if one.words == "set" else ""
+            self.print(Text.assemble((without_orders(line), style), remark), soft_wrap=True)
 
     def warn(self, text: str, kind: str = "warning") -> None:
         """A warning, or another line that begins with its kind; once, however often it is given."""

@@ -16,10 +16,10 @@ from rich.text import Text
 
 from coilset.model.case.phases import drives_at
 from coilset.model.contact.base import SEAT_DOFS
-from coilset.model.results.records.labels import held_matters, largest_errors, last_released, lives_text, lost, within
-from coilset.model.results.records.rates import MAKERS
+from coilset.model.results.quantities import quantities
+from coilset.model.results.records.labels import lives_text, within
 from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
-from coilset.model.results.records.units import quantity as name_and_unit
+from coilset.model.results.records.units import words_and_unit
 from coilset.model.run.analysis import Analysis
 from coilset.scripts.terminal.console import Console, styled, table
 
@@ -134,8 +134,7 @@ class Lines:
         """Print the results, after the last step of a run that ended early."""
         if self._unsaid is not None:
             self._print(self._unsaid)
-        rows = pressed_rows(summary) if summary["turn_max_deg"] is None else _turned(summary)
-        self.console.pairs(rows, bold="set")
+        self.console.quantities(quantities(summary))
         if summary["working"]:
             self.console.print(working_table(summary["working"]))
         for limit in summary["limits"]:
@@ -282,7 +281,7 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
 
 def limit_line(limit: Mapping[str, Any]) -> Text:
     """Whether a limit is met, and by how much."""
-    words, unit = name_and_unit(limit["name"])
+    words, unit = words_and_unit(limit["name"])
     bounds = f"{limit['low']:.5g} to {limit['high']:.5g} {unit}"
     if limit["value"] is None:
         return Text(f"  {words}: no such result; limits {bounds}")
@@ -322,81 +321,3 @@ class _Handler(logging.Handler):
     def emit(self, record: logging.LogRecord) -> None:
         """Print it, fainter than the steps."""
         self.console.print(styled("dim", record.getMessage()), soft_wrap=True)
-
-
-def _beyond_coil(summary: Mapping[str, Any], name: str) -> Iterator[tuple[str, str]]:
-    """Rows of hooks or arms."""
-    if summary["tail_stress_max_MPa"] is not None:
-        yield f"maximum stress along the wire, {name}", quantity(summary["tail_stress_max_MPa"], "MPa", 1)
-        yield "  there after the release", quantity(summary["residual_tail_stress_MPa"], "MPa", 1)
-
-
-def pressed_rows(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Rows of a spring that is compressed or pulled."""
-    of_set = summary["estimated_set_error_mm"]
-    if summary["initial_tension_N"] is not None:
-        for when, name in (("before", ""), ("after", "_after")):
-            error = summary[f"estimated_initial_tension{name}_error_N"]
-            given = "" if name else f", wound with {summary['initial_tension_given_N']:.5g} N"
-            yield f"initial tension {when}", within(summary[f"initial_tension{name}_N"], error, "N", 2) + given
-        yield "rate, coils open", quantity(summary["open_rate_N_per_mm"], "N/mm")
-    yield from _beyond_coil(summary, "hooks")
-    yield "free length before", quantity(summary["free_length_before_mm"], "mm")
-    for number, release in enumerate(summary["releases"][:-1], 1):
-        yield f"free length after release {number}", quantity(release["free_length_mm"], "mm")
-    earlier = last_released(summary)
-    last = "free length after the last release" if earlier or len(summary["releases"]) > 1 else "free length after"
-    yield last, within(summary["free_length_after_mm"], of_set, "mm", 4)
-    at = f", release in step {earlier[0]} of {earlier[1]}" if earlier else ""
-    yield f"set{at}", within(summary["set_mm"], of_set, "mm", 4)
-    if held_matters(summary):
-        moment = quantity(summary["end_moment_held_Nmm"], "N mm", 0)
-        yield "  before its ends are let go", f"{quantity(summary['set_held_mm'], 'mm', 4)}, held with {moment}"
-    closed = summary["initial_tension_N"] is not None
-    rate = within(summary["rate_N_per_mm"], summary["estimated_rate_error_N_per_mm"], "N/mm", 4)
-    yield f"initial rate{', coils closed' * closed}", rate
-    if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
-        finished = summary["rate_30_70_after_N_per_mm"]
-        name = "rate, 30 to 70 % of travel to block" if finished is None else "rate of the finished spring, 30 to 70 %"
-        rate = finished or summary["rate_30_70_N_per_mm"]
-        far = MAKERS[1] * (summary["free_length_before_mm"] - summary["block_height_mm"])
-        yield name, f"needs a travel of {far:.4g} mm" if rate is None else quantity(rate, "N/mm")
-    for rate in summary["rates"]:
-        yield f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm")
-    if summary["force_max_is_given"]:
-        yield "maximum force, given", quantity(summary["force_max_N"], "N", 2)
-        error = summary["estimated_force_max_height_error_mm"]
-        yield "height under it", within(summary["force_max_height_mm"], error, "mm", 4)
-    else:
-        yield "maximum force", within(summary["force_max_N"], summary["estimated_force_error_N"], "N", 2)
-    for stay in summary["load_losses"]:
-        yield f"load lost in time at {stay['height_mm']:.5g} mm", lost(stay)
-    if summary["force_max_N"] >= 0.0:
-        yield "block height", quantity(summary["block_height_mm"], "mm")
-    yield "maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2)
-    error, turn = summary["estimated_residual_shear_inside_error_MPa"], summary["residual_shear_inside_turn"]
-    inside = within(summary["residual_shear_inside_MPa"], error, "MPa", 2)
-    at = "" if turn is None else f" at turn {turn:.2f}"
-    yield "residual shear stress, inside of coil", inside + at
-    yield "  median of the middle turns", quantity(summary["residual_shear_inside_median_MPa"], "MPa", 2)
-    if largest := largest_errors(summary["estimated_errors"]):
-        yield "largest part of the errors ±", largest
-
-
-def _turned(summary: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Rows of a torsion spring."""
-    of_set = summary["estimated_turn_set_error_deg"]
-    yield "set", within(summary["turn_set_deg"], of_set, "°", 3)
-    given = summary["torque_max_is_given"]
-    error = summary["estimated_turn_error_deg"] if given else None
-    yield "largest rotation", within(summary["turn_max_deg"], error, "°", 3)
-    error = None if given else summary["estimated_torque_error_Nmm"]
-    yield f"maximum torque{', given' if given else ''}", within(summary["torque_max_Nmm"], error, "N mm", 1)
-    yield "rate", quantity(summary["turn_rate_Nmm_per_deg"], "N mm/°")
-    for side in ("inside", "outside"):
-        stress = quantity(summary[f"residual_bending_{side}_MPa"], "MPa", 2)
-        yield f"residual bending stress, {side} of coil", stress
-    yield from _beyond_coil(summary, "arms")
-    yield "smallest inner diameter", quantity(summary["inner_diameter_min_mm"], "mm", 2)
-    if largest := largest_errors(summary["estimated_errors"], turned=True):
-        yield "largest part of the errors ±", largest

@@ -50,7 +50,7 @@ def page_of(folder, said):
     """Its page begins with what was found, and tells each evaluation."""
     text = write_design_report(folder).read_text(encoding="utf-8")
     assert f"<strong>{said['found']['loading.0.to.height']:.4f} mm</strong>" in text
-    assert f"<strong>{said['summary']['set_mm']:.3f} mm</strong>" in text
+    assert f"<strong>{said['summary']['set_mm']:.5g} mm</strong>" in text
     assert (folder / "found.yaml").read_text(encoding="utf-8").splitlines()[-1] in text
     (trace,) = unpacked(text, "data")["figures"]["search"]["data"]
     off = [abs(r["values"][0] - 25.0) / 25.0 for r in read_records(folder / "evaluations.jsonl")]

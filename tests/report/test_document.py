@@ -153,7 +153,9 @@ def test_torque_over_rotation_has_the_run_and_its_limits(tmp_path):
     assert (limits["x"], limits["y"]) == ([200.0, 200.0], [4700.0, 4900.0])
     assert points["y"] == pytest.approx([4800.0, 2250.0])
     values = {line.label.strip(): line.found for _, lines in found.tables for line in lines}
-    assert (values["Moment bei 100°"], values["größtes Moment des Laufs"]) == ("2250", "4800")
+    finished = {line.label: line.found for line in dict(found.tables)["Fertige Feder"]}
+    assert (values["Moment bei 100°"], finished["größtes Moment des Laufs"]) == ("2250", "4800")
+    assert finished["Setzbetrag"] == "10"
 
 
 def test_a_page_is_self_contained_and_escaped():

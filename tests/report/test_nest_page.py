@@ -73,8 +73,8 @@ def test_the_figures_are_of_both_springs(page):
 
 
 def test_the_title_of_its_picture_is_in_plain_numbers():
-    assert headline({"force_max_N": 83812.3, "set_mm": -1e-7}) == "Maximum force 83,812 N, set 0.00 mm"
-    assert headline({"force_max_N": 412.68, "set_mm": 30.7037}) == "Maximum force 412.68 N, set 30.70 mm"
+    assert headline({"force_max_N": 83812.3, "set_mm": -1e-7}) == "Maximum force 83812 N, set 0 mm"
+    assert headline({"force_max_N": 412.68, "set_mm": 30.7037}) == "Maximum force 412.68 N, set 30.704 mm"
     unsure = {"force_max_N": 844.39, "set_mm": 30.7385, "estimated_force_error_N": 56.0, "estimated_set_error_mm": 2.1}
     assert headline(unsure) == "Maximum force 840 ± 60 N, set 31 ± 3 mm"
     assert with_unit(-1e-7, "mm", 3) == "0.000 mm"

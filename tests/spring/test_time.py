@@ -13,12 +13,12 @@ from coilset.model.case.case import check
 from coilset.model.figures.panels.characteristic import characteristic
 from coilset.model.material import library
 from coilset.model.report.answer import answer
+from coilset.model.results.quantities import quantities
 from coilset.model.results.records.labels import last_released
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import run_of
 from coilset.model.run.analysis import Analysis
-from coilset.scripts.terminal.progress import pressed_rows
 
 HOLD = [{"to": {"travel": 10}, "steps": 1}, {"hold": {"hours": 1000}, "steps": 8}]
 SPRING = {
@@ -111,7 +111,7 @@ def test_each_time_at_a_height_is_listed_with_what_it_lost():
         assert one["loss_percent"] == pytest.approx(100 * (1 - after.force_N / before.force_N), rel=1e-12)
         assert (one["force_before_N"], one["force_after_N"]) == (before.force_N, after.force_N)
     assert summary["load_loss_percent"] == last["loss_percent"] < 0.0 < first["loss_percent"]
-    rows = dict(pressed_rows(summary))
+    rows = {one.words: one.remark for one in quantities(summary)}
     assert sum(name.startswith("load lost in time at") for name in rows) == 2
     assert rows["load lost in time at 16 mm"].endswith(" in 0.3333 h, from 373 to 293 K")
     assert "loses" not in characteristic(run_of(analysis.setup, analysis.result, origin(analysis.case))).title
@@ -127,7 +127,6 @@ def test_a_set_before_the_time_under_load_is_called_so():
         " by its last release and then loses "
         in characteristic(run_of(analysis.setup, analysis.result, origin(analysis.case))).title
     )
-    assert "set, release in step 2 of 11" in str(list(pressed_rows(summary)))
     assert answer(summary)[0].remark.endswith("at the last release, in step 2 of 11")
     assert last_released(summary | {"steps": 2}) is None
 

@@ -9,6 +9,7 @@ from coilset.model.base.between_steps import UNKNOWN, Between, closed_rate, part
 from coilset.model.figures.panels.panel import COLOURS, GREY, Panel, axis, curve, upright
 from coilset.model.figures.panels.phases import Phase, phases, unnamed
 from coilset.model.results.files.opened import Run
+from coilset.model.results.quantities import quantity
 from coilset.model.results.records.labels import MOST_DECIMALS, last_released, plain, within
 from coilset.model.results.records.working import number_name
 
@@ -123,7 +124,7 @@ def _curves(
 
 def _held(summary: Mapping[str, Any], when: str = "") -> str:
     """The initial tension, before or `_after` the last release, with its error."""
-    return within(summary[f"initial_tension{when}_N"], summary.get(f"estimated_initial_tension{when}_error_N"), "N", 2)
+    return quantity(summary, f"initial_tension{when}_N").text
 
 
 def compressed(force: float) -> str:

@@ -11,11 +11,12 @@ from coilset.model.report.document.diagrams import diagrams
 from coilset.model.report.document.entries import SheetSpec
 from coilset.model.report.document.view import Drawing, Level, view
 from coilset.model.report.document.words import Words
-from coilset.model.results.files.opened import is_turned
 from coilset.model.results.limits import case_limits
+from coilset.model.results.loading import Loading, loading_of
+from coilset.model.results.quantities import quantity
 from coilset.model.results.records.labels import lives_text
 from coilset.model.results.records.record import Limit
-from coilset.model.results.records.units import quantity
+from coilset.model.results.records.units import words_and_unit
 from coilset.model.results.records.working import number_name
 from coilset.model.standards import en15800
 from coilset.model.standards.rows import Row, sections
@@ -23,17 +24,8 @@ from coilset.model.standards.sheet import Sheet
 
 MOST_LEVELS = 6  # lengths on the drawing; the table has all
 DRAWN = {"free_length_after_mm": "free length L0", "rate_30_70_after_N_per_mm": "rate R"}
-FINISHED = {
-    "set_mm": ("set", "mm"),
-    "residual_shear_inside_MPa": ("residual shear stress, inside", "MPa"),
-    "force_max_N": ("greatest force of the run", "N"),
-}
-TURNED = {
-    "turn_set_deg": ("set", "°"),
-    "residual_bending_inside_MPa": ("residual bending stress, inside", "MPa"),
-    "residual_bending_outside_MPa": ("residual bending stress, outside", "MPa"),
-    "torque_max_Nmm": ("greatest torque of the run", "N mm"),
-}
+FINISHED = ("set_mm", "residual_shear_inside_MPa", "force_max_N")
+TURNED = ("turn_set_deg", "residual_bending_inside_MPa", "torque_max_Nmm")
 TAILS = ("hooks", "arms")
 ALL = ("all", "all others")  # rows of what a table has not
 
@@ -159,7 +151,7 @@ def _tails(case: Case, words: Words) -> Iterator[Line]:
 
 def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
     for limit in limits:
-        name, unit = quantity(limit.name)
+        name, unit = words_and_unit(limit.name)
         result = summary.get(limit.name)
         mark = "" if result is None else " ✓" if limit.margin(result) >= 0.0 else " ✗"
         value = words.number(result)
@@ -170,9 +162,10 @@ def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Itera
 def _finished(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """What only a run has: the set, residual stress, and the true stress at the working lengths with its safety."""
     number = words.number
-    for name, (label, unit) in (TURNED if is_turned(summary) else FINISHED).items():
-        if (value := summary.get(name)) is not None:
-            yield Line(words(label), "", number(value if "set" in name or "residual" in name else abs(value)), unit)
+    for name in TURNED if loading_of(summary) is Loading.TURNED else FINISHED:
+        one = quantity(summary, name)
+        if one.value is not None:
+            yield Line(words(one.words), "", words.comma(one.number), one.unit)
     for state in summary.get("working") or ():
         if "length_wanted" in state and not state["reason"]:
             place = f"{state['length_wanted']:g} mm"

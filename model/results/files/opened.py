@@ -1,7 +1,6 @@
 """Reading a results folder: the summary, the tables and the section points, for reports and studies."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ import xarray as xr
 from coilset.model.base.columns import number, read_columns
 from coilset.model.base.errors import InputError, reading
 from coilset.model.results.files.netcdf import read_netcdf
+from coilset.model.results.loading import Loading, loading_of
 from coilset.model.results.records.units import unit_of
 
 
@@ -38,7 +38,7 @@ class Run:
     @property
     def is_turned(self) -> bool:
         """Whether the spring is one of torsion."""
-        return is_turned(self.summary)
+        return loading_of(self.summary) is Loading.TURNED
 
     @property
     def has_steps(self) -> bool:
@@ -58,11 +58,6 @@ class Run:
     def snapshots(self) -> list[str]:
         """Names of the snapshots: the start, and the end of each phase."""
         return [str(name) for name in self.data["snapshot"].values]
-
-
-def is_turned(summary: Mapping[str, Any]) -> bool:
-    """Whether a spring is one of torsion, of whose axial force nothing is said; of summary.json."""
-    return summary.get("turn_max_deg") is not None
 
 
 def open_run(folder: str | Path) -> Run:

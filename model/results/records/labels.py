@@ -95,13 +95,6 @@ def last_released(summary: Mapping[str, Any]) -> tuple[int, int] | None:
     return releases[-1]["step"], summary["steps"]
 
 
-def lost(stay: Mapping[str, Any]) -> str:
-    """What a spring lost of its force during a time at constant height, an entry of `load_losses`."""
-    before, after = (stay[f"temperature_{when}_K"] for when in ("before", "after"))
-    heat = "" if abs(after - before) < 0.5 else f", from {before:.0f} to {after:.0f} K"
-    return f"{stay['loss_percent']:z.2f} % of {stay['force_before_N']:.5g} N in {stay['hours']:.4g} h{heat}"
-
-
 def largest_errors(errors: Mapping[str, Mapping[str, float | None]] | None, turned: bool = False) -> str:
     """Which cause has the largest part in which number, `mesh (force, set), steps (residual stress)`.
 

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.between_steps import Between, part
+from coilset.model.results.quantities import MAKERS
 from coilset.model.results.records.record import Result, Setup, Step
 from coilset.model.results.records.releases import FREE, LEAST_TURN, Release, is_turned
 
-MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
 FEW = 3  # open steps that show a line and how it bends
 STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less changes nothing
 

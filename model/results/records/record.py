@@ -13,7 +13,7 @@ from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
 from coilset.model.fatigue.strength import Strength
 from coilset.model.results.records.frame import Frame
-from coilset.model.results.records.units import quantity
+from coilset.model.results.records.units import words_and_unit
 from coilset.model.rod.elements import Element
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
@@ -328,7 +328,7 @@ class Limit:
     @property
     def words(self) -> str:
         """The result, with its unit."""
-        words, unit = quantity(self.name)
+        words, unit = words_and_unit(self.name)
         return f"{words}, {unit}"
 
     def margin(self, value: float) -> float:

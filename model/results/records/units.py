@@ -35,7 +35,7 @@ def without_unit(name: str) -> tuple[str, str]:
     return (name, "") if unit == "1" else (stem, unit)
 
 
-def quantity(name: str) -> tuple[str, str]:
+def words_and_unit(name: str) -> tuple[str, str]:
     """Words and unit of a number of results from its name, as in `set_mm`; that of a working state has its place."""
     stem, unit = without_unit(name)
     words = stem.replace("_", " ")

@@ -19,7 +19,7 @@ from coilset.model.case import check
 from coilset.model.case.material import case_elastic, case_law
 from coilset.model.results.limits import case_limits
 from coilset.model.results.records.record import Limit
-from coilset.model.results.records.units import quantity
+from coilset.model.results.records.units import words_and_unit
 from coilset.model.sweep.multifidelity import LEVEL, ControlVariate, slope
 
 ENOUGH = 8  # cases
@@ -53,7 +53,7 @@ class Capability:
     def row(self) -> dict[str, str]:
         """Its numbers with their intervals, as texts."""
         (out, (low, high)), (cp, cps), (cpk, cpks) = self.outside, self.cp, self.cpk
-        words, unit = quantity(self.limit.name)
+        words, unit = words_and_unit(self.limit.name)
         return {
             "result": words,
             "limits": f"{self.limit.low:.5g} to {self.limit.high:.5g} {unit}".rstrip(),
