@@ -247,6 +247,19 @@ def test_coils_that_are_wound_onto_each_other_rub():
     assert more - there > 0.01 * there
 
 
+def test_between_heads_that_keep_the_length_it_is_a_torsion_spring():
+    """Closed coils press on heads that leave them no room to grow by d a turn, with more than half the torque over the
+    radius: it was a compression spring, with an initial rate of 10000 N/mm and no set."""
+    spring = {"wire_diameter": WIRE, "mean_diameter": 30.0, "turns": 4, "pitch": WIRE}
+    loading = [{"to": {"travel": 0, "top": to}, "steps": 3} for to in ({"turn": 90.0}, {"torque": 0})]
+    mesh = {"elements_per_turn": 8, "section": {"radial": 2, "angular": 8}}
+    analysis = Analysis(check(data({}, spring=spring, mesh=mesh) | {"loading": loading}), MPI.COMM_SELF)
+    summary = summarise(analysis.setup, analysis.run())
+    assert summary["torque_max_Nmm"] < 2.0 * 15.0 * summary["force_max_N"]
+    assert summary["turn_max_deg"] == pytest.approx(90.0)
+    assert abs(summary["turn_set_deg"]) < 0.01
+
+
 @pytest.mark.slow
 def test_a_door_spring_is_turned_by_a_revolution():
     """20 coils wound onto each other, on a shaft: 360° and back in 20 s of one core. They took more than 200 s for

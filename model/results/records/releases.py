@@ -8,6 +8,7 @@ from coilset.model.results.records.record import Result, Setup, Snapshot, Step
 
 TURNED = 2.0  # torque over force times coil radius from which a spring is loaded by the torque about its axis
 LEAST_TURN = 1e-6  # degrees: a spring that is turned by less is not turned, but for rounding
+STILL = 1e-9  # of the free length: heads that move by less keep it
 FREE = 1e-6  # of the maximum force so far: a spring under less is free of load
 
 
@@ -47,11 +48,14 @@ def last_release(setup: Setup, result: Result) -> Release | None:
 
 
 def is_turned(setup: Setup, steps: Sequence[Step]) -> bool:
-    """Whether a run loads its spring by a torque about the axis, as a torsion spring, and not by a force along it."""
-    turn, torque, force = (
-        max((abs(getattr(one, name)) for one in steps), default=0.0) for name in ("turn_deg", "torque_Nmm", "force_N")
+    """Whether a run loads its spring by a torque about the axis, as a torsion spring, and not by a force along it: by
+    their size, or by heads that keep the length, between which coils that lie on each other press."""
+    turn, torque, force, travel = (
+        max((abs(getattr(one, name)) for one in steps), default=0.0)
+        for name in ("turn_deg", "torque_Nmm", "force_N", "travel_mm")
     )
-    return turn > LEAST_TURN and torque > TURNED * 0.5 * setup.mean_diameter * force
+    kept = travel < STILL * setup.spring.free_length
+    return turn > LEAST_TURN and (kept or torque > TURNED * 0.5 * setup.mean_diameter * force)
 
 
 def turned_radius(setup: Setup, steps: Sequence[Step]) -> float:
