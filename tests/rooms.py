@@ -59,14 +59,15 @@ def sources() -> dict[str, ast.Module]:
 @cache
 def imports() -> dict[str, set[str]]:
     """The files of the program that each file imports."""
-    modules = {_module(path): path for path in sources()}
+    modules = {module(path): path for path in sources()}
     found: dict[str, set[str]] = {}
     for path, tree in sources().items():
         found[path] = set(_imported(tree, modules)) - {path}
     return found
 
 
-def _module(path: str) -> str:
+def module(path: str) -> str:
+    """Name of the module in a file."""
     return "coilset." + path.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
 
 

@@ -1,6 +1,7 @@
 """Rooms of the program: their imports run in one direction, and each stays small enough to be read."""
 
 import ast
+import subprocess
 import sys
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
@@ -32,6 +33,23 @@ def test_no_import_is_left_that_the_rooms_forbid_but_those_that_are_to_go():
     """A new one needs a door, see docs/architecture.md; one that has gone leaves the list."""
     left = {path: set(targets) for path, targets in rooms.plan()["exceptions"].items()}
     assert rooms.forbidden() == left
+
+
+RUN = """
+import sys
+from coilset.model.case import read_case
+from coilset.model.run.analysis import Analysis
+Analysis(read_case(sys.argv[1], ["mesh.elements_per_turn=4", "mesh.section={radial: 2, angular: 8}"])).run()
+print(*sys.modules)
+"""
+
+
+def test_a_run_loads_no_package_but_those_that_are_to_go(example):
+    """Names of modules in strings, as of doors, evade the list of imports."""
+    command = [sys.executable, "-c", RUN, str(example)]
+    loaded = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    found = {rooms.room_of(path) for path in rooms.sources() if rooms.module(path) in loaded}
+    assert {room for room in found if rooms.floor_of(room) in rooms.PACKAGES} == set(rooms.plan()["loaded"])
 
 
 def test_the_parts_of_equilibrium_are_built_on_each_other():
