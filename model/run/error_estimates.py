@@ -197,7 +197,8 @@ class _Watch:
             finer = outline.rule(FINER_OUTLINE * len(rule))
         warps = outline is not None and section.kind == "warping"
         self.warps, self.left_out = warps, DEGREE if warps else SECTION
-        follow = partial(FollowedSections, companion.rod, case.spring, companion.setup.inside)
+        past = case.spring if case.past else None
+        follow = partial(FollowedSections, companion.rod, past, companion.setup.inside)
         self.finer = follow(WARPING if warps else FOLLOWED, section.kind, finer, case.section_degree)
         self.warping: FollowedSections | None = None
         if warps:

@@ -20,12 +20,13 @@ from mpi4py import MPI
 
 from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.errors import CoilsetError
-from coilset.model.manufacture.initial_state import give_sections_past
+from coilset.model.base.package import package
 from coilset.model.rod.rod import Rod
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.surface import Inside
 
+PAST = "coilset.model.manufacture.initial_state"  # the door to what manufacture leaves in the wire
 UPDATES = 2  # of a section in a step, to find its strains
 
 
@@ -34,7 +35,7 @@ class FollowedSections:
 
     Args:
         rod: Rod.
-        spring: the entries of its case, with what manufacture leaves in the wire.
+        spring: the entries of its case if manufacture leaves stress in the wire; None if it does not.
         inside: where the inside of the coil is on the wire's surface.
         elements: number of those whose sections are followed, evenly spread along the wire.
         kind, rule, degree: of these sections, as in `make_sections`.
@@ -58,7 +59,9 @@ class FollowedSections:
             degree,
         )
         self.start = self.sections.initial_state()
-        _together(self.comm, lambda: give_sections_past(self.sections, rule, self.start, rod, spring))
+        if spring is not None:
+            give = package(PAST, "wire with a past").give_sections_past
+            _together(self.comm, lambda: give(self.sections, rule, self.start, rod, spring))
         self.strain = self._strain()
         self.shift, self.greatest = np.zeros_like(self.strain), np.zeros_like(self.strain)
         self.start["strain"] = self.strain.copy()
