@@ -11,7 +11,6 @@ from coilset.model.case.loading import is_pressed
 from coilset.model.case.material import case_elastic
 from coilset.model.case.phases import TimePhase
 from coilset.model.material.law.law import Law
-from coilset.model.material.law.own import OwnLaw
 from coilset.model.material.law.steel import Elastic
 from coilset.model.standards import en13906
 from coilset.model.standards.buckling import seating_of
@@ -132,7 +131,7 @@ def keeps_elastic_warping(case: Case, spring: Spring) -> bool:
 
 def warping_can_be_estimated(case: Case, law: Law) -> bool:
     """Whether sections can be followed as ones that warp freely: with six stresses, in curved wire."""
-    return case.mesh.section.kind == "curved" and not isinstance(law, OwnLaw)
+    return case.mesh.section.kind == "curved" and law.keeps_direction is None
 
 
 def _warping(case: Case, spring: Spring, law: Law) -> Iterator[Warning]:
