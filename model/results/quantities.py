@@ -234,6 +234,7 @@ REMARKS: dict[str, Callable[[Summary], str]] = {
     "free_length_after_mm": _of_length,
     "initial_tension_N": _of_tension,
     "force_max_N": _of_load,
+    "rate_N_per_mm": lambda s: "" if s.get("open_rate_N_per_mm") is None else "coils closed",
     "residual_shear_inside_MPa": _of_residual,
     "tail_stress_max_MPa": _of_tail,
     "turn_set_deg": lambda s: f"of {plain(abs(s['turn_max_deg']), DIGITS)}° of rotation",
