@@ -34,4 +34,4 @@ def skip(app: Sphinx, what: str, name: str, thing: object, is_skipped: bool, opt
     Python describes such a field as "Alias for field number 0"; the class describes what it is.
     """
     alias = (getattr(thing, "__doc__", None) or "").startswith("Alias for field number")
-    return True if alias or get_origin(thing) is Annotated else None
+    return True if alias or get_origin(thing) in (Annotated, dict) else None
