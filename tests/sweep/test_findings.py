@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coilset.model.results.records.units import unit_of
-from coilset.model.sweep.dataset import quantity
+from coilset.model.results.records.units import unit_of, words_and_unit
 from coilset.model.sweep.figures import findings
 
 
@@ -47,14 +46,14 @@ def test_the_middle_is_that_of_the_quantiles():
 
 
 def test_a_greatest_value_is_called_so():
-    assert quantity("force_max_N") == ("maximum force", "N")
-    assert quantity("rate_N_per_mm") == ("rate", "N/mm")
+    assert words_and_unit("force_max_N") == ("maximum force", "N")
+    assert words_and_unit("rate_N_per_mm") == ("rate", "N/mm")
 
 
 def test_a_unit_is_taken_off_a_name_and_a_turn_is_none():
-    assert quantity("load_loss_percent") == ("load loss", "%")
-    assert quantity("plastic_work_max_turn") == ("plastic work max turn", "")
-    assert quantity("iterations") == ("iterations", "")
+    assert words_and_unit("load_loss_percent") == ("load loss", "%")
+    assert words_and_unit("plastic_work_max_turn") == ("plastic work max turn", "")
+    assert words_and_unit("iterations") == ("iterations", "")
     assert unit_of("plastic_work_max_turn") == "1"
     assert unit_of("plastic_work_max_N_per_mm2") == "N/mm²"
     assert unit_of("least_eigenvalue") == "N/mm"
