@@ -74,6 +74,18 @@ def to_the_end(setup: Setup, snapshot: Snapshot) -> float:
     return float(abs(values[near] - values[at]) / apart[near] * rest[at])
 
 
+def jump(setup: Setup, snapshot: Snapshot) -> float:
+    """By how much `shear_inside` jumps from one element to the next beside its largest value, MPa.
+
+    In the spring it is continuous; of three borders the largest jump, as that at a plane of symmetry is none.
+    """
+    values, turns = _shear_inside(setup, snapshot), setup.section_turns[is_middle(setup)]
+    borders = np.flatnonzero(np.abs(np.diff(turns)) < SAME_TURN)
+    jumps = np.abs(np.diff(values))[borders]
+    nearest = np.argsort(np.abs(turns[borders] - turns[_largest(values)]), kind="stable")[:3]
+    return float(jumps[nearest].max(initial=0.0))
+
+
 def change_of_sign(setup: Setup, snapshot: Snapshot, error: float) -> float:
     """By how much `shear_inside` changes, MPa, where the largest value of the other sign replaces it; 0 where that is
     smaller by more than the error of both."""

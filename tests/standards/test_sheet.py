@@ -387,7 +387,7 @@ def test_wrong_questions(case, tmp_path):
         sheet(case, Options(results=tmp_path, out=[tmp_path / "out"]))
     folder = run_folder(tmp_path / "run")
     (folder / "history.csv").unlink()
-    with pytest.raises(InputError, match=f"^{folder}/history.csv: cannot be read"):
+    with pytest.raises(InputError, match=f"^{folder}: holds no results of a run: there is no history.csv"):
         from_results.read(folder)
     (folder / "history.csv").write_text("a,b\n1,2\n", encoding="utf-8")
     with pytest.raises(InputError, match="is not a result of coilset solve"):

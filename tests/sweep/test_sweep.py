@@ -22,6 +22,7 @@ from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.material.library import FOLDER
 from coilset.model.results.records.summary import summarise
+from coilset.model.results.records.units import words_and_unit
 from coilset.model.run.analysis import Analysis
 from coilset.model.sweep import dataset
 from coilset.model.sweep.engines import processes
@@ -393,7 +394,7 @@ def test_inputs_have_the_units_of_their_entries(write_sweep, tmp_path):
         "both": "mm",
         "mixed": "",
     }
-    assert dataset.quantity("plastic_work_max_N_per_mm2") == ("maximum plastic work", "N/mm²")
+    assert words_and_unit("plastic_work_max_N_per_mm2") == ("maximum plastic work", "N/mm²")
 
 
 def test_a_sweep_with_failed_cases_warns_and_ends_with_3(write_sweep, tmp_path):
