@@ -53,12 +53,12 @@ from coilset.model.results.files.folder import make, refuse_results, write_histo
 from coilset.model.results.files.labelled import labelled
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import Step
-from coilset.model.results.records.summary import summarise
-from coilset.model.results.run_files import write_run
 from coilset.model.run.analysis import Analysis, FurtherContacts
 from coilset.model.run.refinement import within_accuracy
 from coilset.model.runtime.processes import usable_cores
 from coilset.model.runtime.threads import usual
+from coilset.model.summary.run_files import write_run
+from coilset.model.summary.summary import summarise
 from coilset.model.sweep.study import Study as _Study
 
 if TYPE_CHECKING:

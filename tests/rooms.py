@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 TOPS = "meshes", "model", "verification", "scripts"
 ALONE = "api.py", "open.py"
-RUN, RESULT = "model/run/analysis.py", "model/results/records/summary.py"
+RUN, RESULT = "model/run/analysis.py", "model/results/records/record.py"
 CORE, PACKAGES = "core", ("physics", "tools")
 # files that somebody opens for a typical change
 CHANGES = {
@@ -24,11 +24,8 @@ CHANGES = {
     "a column of history.csv": ["model/results/records/record.py", "model/run/recorder.py"],
     "a number shown everywhere": [
         "model/results/records/summary_entries.py",
-        "model/results/records/summary.py",
-        "scripts/terminal/progress.py",
-        "model/report/answer.py",
-        "model/report/first_sheet.py",
-        "model/report/document/content.py",
+        "model/summary/summary.py",
+        "model/results/quantities.py",
     ],
     "a shape of a spring": ["meshes/springs/shapes.py"],
     "a part of a law": [
@@ -36,7 +33,7 @@ CHANGES = {
         "model/material/point/increment.py",
         "model/material/law/file.py",
     ],
-    "a warning": ["model/results/records/warnings.py", "model/report/verdict.py", "model/report/warning_words.py"],
+    "a warning": ["model/summary/warnings.py", "model/report/verdict.py", "model/report/warning_words.py"],
     "a figure": ["model/figures/panels/panel.py", "model/report/page.py", "model/figures/pictures.py"],
     "a command": ["scripts/main.py", "scripts/commands/report.py"],
 }

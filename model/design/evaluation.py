@@ -18,8 +18,8 @@ from coilset.model.design.file import Design
 from coilset.model.design.surrogate import Guess, guess
 from coilset.model.material import library
 from coilset.model.results.records.record import Result, Setup
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.model.sweep.evaluate import plain
 from coilset.model.sweep.keys import Keys
 

@@ -13,8 +13,8 @@ from coilset.model.nest.nest import Pressed
 from coilset.model.results.files.folder import RESULTS, clear, prepare, subfolder, write_summary, write_table
 from coilset.model.results.quantities import quantity
 from coilset.model.results.records.provenance import origin
-from coilset.model.results.records.summary import summarise
-from coilset.model.results.run_files import write_run
+from coilset.model.summary.run_files import write_run
+from coilset.model.summary.summary import summarise
 
 STEPS = "nest.csv"
 COLUMNS = ("step", "seat_height_mm", "force_N", "outer_force_N", "inner_force_N", "clearance_mm")

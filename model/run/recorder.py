@@ -29,9 +29,9 @@ from coilset.model.results.records.record import (
 )
 from coilset.model.results.records.seat_reactions import faint_force, seat_reactions
 from coilset.model.results.records.shape import LeastRise, clearance
-from coilset.model.results.records.warnings import step_warnings
 from coilset.model.rod.rod import Rod
 from coilset.model.section import surface
+from coilset.model.summary.warnings import step_warnings
 
 log = logging.getLogger("coilset.steps")
 

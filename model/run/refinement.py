@@ -20,8 +20,8 @@ from coilset.model.contact.build import bedding_of
 from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import RunErrors
 from coilset.model.results.records.releases import is_turned
-from coilset.model.results.records.warnings import allowed_errors
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.warnings import allowed_errors
 
 log = logging.getLogger("coilset.steps")
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from coilset.model.base.warning import Warning
 from coilset.model.results.records.summary_entries import UNSEEN
-from coilset.model.results.records.warnings import beyond_validity
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.slice.watch import shear
 from coilset.model.solid.continuum import mises
 from coilset.model.standards.case_warnings import case_warnings
+from coilset.model.summary.warnings import beyond_validity
 
 
 def summarise(analysis: SliceAnalysis) -> dict:

@@ -14,10 +14,10 @@ from coilset.model.base.errors import CoilsetError, InputError, SolveError
 from coilset.model.case import Case, check
 from coilset.model.case.material import case_law
 from coilset.model.results.records.record import Step
-from coilset.model.results.records.summary import summarise
 from coilset.model.results.records.summary_entries import NUMBERS
 from coilset.model.results.records.working import is_working_number
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.model.sweep.engines.pool import Record, Task
 from coilset.model.sweep.keys import Keys, Model
 from coilset.model.uniform_coil.estimate import estimate

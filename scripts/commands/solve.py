@@ -17,11 +17,11 @@ from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.files.folder import DRAWN, RESULTS, clear, prepare
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import Step
-from coilset.model.results.records.summary import summarise
-from coilset.model.results.run_files import write_run
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.refinement import within_accuracy
 from coilset.model.runtime.threads import usual
+from coilset.model.summary.run_files import write_run
+from coilset.model.summary.summary import summarise
 from coilset.scripts.compiling import compile_first
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.drawing import Drawings

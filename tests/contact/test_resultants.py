@@ -8,10 +8,10 @@ from mpi4py import MPI
 
 from coilset.model.case import check, read_case
 from coilset.model.contact.resultants import Wrench
-from coilset.model.results.files.dataset import pressure_along_wire
 from coilset.model.results.files.folder import write_seats
 from coilset.model.results.records.record import SeatReactions
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.dataset import pressure_along_wire
 
 COARSE = [
     "mesh.section.rule=abramowitz9",

@@ -10,8 +10,8 @@ from coilset.model.case import read_case
 from coilset.model.design.design import find, make_search
 from coilset.model.design.file import read_design_file
 from coilset.model.design.output import found_data
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 
 CLOSE = 1e-6  # of the target
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 4.5, "pitch": 12.0}

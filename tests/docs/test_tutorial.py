@@ -11,8 +11,8 @@ import yaml
 from coilset.model.case import check, read_case
 from coilset.model.material import library, programs
 from coilset.model.results.quantities import ALONG, ENTRIES
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.model.sweep.plan import Plan
 
 PAGES = {

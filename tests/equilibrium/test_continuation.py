@@ -14,8 +14,8 @@ from coilset.model.equilibrium.newton.newton import Start
 from coilset.model.equilibrium.newton.outcome import Estimate, Outcome
 from coilset.model.equilibrium.path.step_sizes import Path, StepSizes
 from coilset.model.equilibrium.settings import StepControl
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]
 

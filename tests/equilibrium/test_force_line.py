@@ -11,8 +11,8 @@ from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
 from coilset.model.figures.panels import force_line
 from coilset.model.results.records.provenance import origin
-from coilset.model.results.run_files import run_of
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.run_files import run_of
 
 WIRE, MEAN, TURNS, PITCH = 5.0, 40.0, 12.0, 9.0
 LENGTH = TURNS * PITCH

@@ -18,8 +18,8 @@ from coilset.model.equilibrium.system.load import Drag
 from coilset.model.equilibrium.system.system import Evaluation
 from coilset.model.results.records.buckling import axis_offset, buckling, leaning
 from coilset.model.results.records.record import Step
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.scripts.terminal.progress import Lines
 
 LONG = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 40, "pitch": 12.0}

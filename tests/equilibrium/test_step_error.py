@@ -12,8 +12,8 @@ from coilset.model.case.case import read_case_data
 from coilset.model.equilibrium.newton.outcome import Estimate
 from coilset.model.equilibrium.path.step_error import LEAST_FACTOR
 from coilset.model.material import library
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.radial=3", "mesh.section.angular=8"]
 BACK = "{to: {force: 0}, steps: 8}"

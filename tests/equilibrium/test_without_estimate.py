@@ -11,8 +11,8 @@ from coilset.model.case import check, read_case
 from coilset.model.case.case import read_case_data
 from coilset.model.report.answer import answer
 from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.model.sweep.rehearsal import build_input
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.interactive import Prompt

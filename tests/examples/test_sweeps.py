@@ -9,8 +9,8 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.case import check
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.model.sweep.plan import Plan
 
 SWEEPS = Path(__file__).resolve().parents[2] / "examples" / "sweeps"

@@ -22,15 +22,15 @@ from coilset.model.case import read_case
 from coilset.model.figures import png, scene
 from coilset.model.figures.display import ensure
 from coilset.model.figures.panels.characteristic import characteristic
-from coilset.model.results import run_files
-from coilset.model.results.files import dataset, folder
+from coilset.model.results.files import folder
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.files.grid_file import write_grid
 from coilset.model.results.records.provenance import origin
-from coilset.model.results.records.summary import summarise
-from coilset.model.results.run_files import run_of
 from coilset.model.run import examples
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary import dataset, run_files
+from coilset.model.summary.run_files import run_of
+from coilset.model.summary.summary import summarise
 from coilset.model.sweep import dataset as sweep_data
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.scripts.main import app

@@ -7,9 +7,9 @@ from coilset.meshes.springs.measured import MeasuredSpec
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards.spring_warnings import spring_warnings
+from coilset.model.summary.summary import summarise
 
 D, WIRE, TURNS, PITCH = 40.0, 5.0, 6.0, 12.0
 BLOCK = 7 * WIRE  # of 6 open turns

@@ -11,8 +11,8 @@ from coilset.model.base.version import __version__
 from coilset.model.case import check, read_case
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.results.records.provenance import origin
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.scripts.commands.solve import solve
 
 PROGRAM = "loading=[{to: {travel: 3}, steps: 2}]"

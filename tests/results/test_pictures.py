@@ -27,9 +27,9 @@ from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.records.labels import plain
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import BucklingMode, Step
-from coilset.model.results.run_files import run_of
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards import goodman
+from coilset.model.summary.run_files import run_of
 
 
 @pytest.mark.parametrize("springs", [1, 2, 4])

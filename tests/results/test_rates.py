@@ -11,8 +11,8 @@ from coilset.model.base.between_steps import Between
 from coilset.model.case import read_case
 from coilset.model.results.records.rates import finished, first_compression, makers_rate, tension
 from coilset.model.results.records.record import Step
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 
 TRAVEL = np.linspace(0.0, 10.0, 21)
 

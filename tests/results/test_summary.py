@@ -7,10 +7,10 @@ from mpi4py import MPI
 
 from coilset.model.case import read_case
 from coilset.model.results.records.releases import releases
-from coilset.model.results.records.summary import summarise, summary
 from coilset.model.results.records.summary_entries import NUMBERS, UNSEEN, Summary
 from coilset.model.results.records.units import unit_of
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise, summary
 
 COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9"]
 

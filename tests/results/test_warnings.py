@@ -15,11 +15,11 @@ from coilset.model.case.material import case_law
 from coilset.model.material.creep.entries import CreepTests
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.records.record import Result, Step
-from coilset.model.results.records.summary import summarise
-from coilset.model.results.records.warnings import accuracy_warning, run_warnings, step_warnings
 from coilset.model.run.analysis import Analysis
 from coilset.model.section import surface
 from coilset.model.standards.case_warnings import case_warnings
+from coilset.model.summary.summary import summarise
+from coilset.model.summary.warnings import accuracy_warning, run_warnings, step_warnings
 from coilset.scripts.commands.solve import solve
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 from coilset.model.case import check, read_case
 from coilset.model.equilibrium.path.free_ends import mean_rotation, nearest_rotation
 from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.model.uniform_coil.rod import press
 
 MADE = ["mesh.elements_per_turn=8", "mesh.section.radial=3", "mesh.section.angular=8", "accuracy=none"]

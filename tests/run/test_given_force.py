@@ -6,8 +6,8 @@ import pytest
 
 from coilset.model.case import check
 from coilset.model.results.records.record import Result, Setup, Step
-from coilset.model.results.records.warnings import allowed_force
 from coilset.model.run.build import forces_given
+from coilset.model.summary.warnings import allowed_force
 
 
 def test_forces_of_the_load_program() -> None:

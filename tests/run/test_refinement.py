@@ -9,9 +9,9 @@ from mpi4py import MPI
 
 from coilset.model.case import read_case
 from coilset.model.results.records.record import Errors, RunErrors
-from coilset.model.results.records.warnings import run_warnings
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.refinement import left_open, left_out, needed, within_accuracy
+from coilset.model.summary.warnings import run_warnings
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.interrupt import Interrupt
 

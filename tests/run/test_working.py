@@ -6,10 +6,10 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
-from coilset.model.results.records.summary import summarise
 from coilset.model.results.records.working import is_working_number, names_of
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards import en13906
+from coilset.model.summary.summary import summarise
 from coilset.model.uniform_coil.estimate import estimate
 
 MADE = ["mesh.elements_per_turn=8", "mesh.section.radial=3", "mesh.section.angular=8", "accuracy=none"]

@@ -7,8 +7,8 @@ from mpi4py import MPI
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 
 PROGRAM = "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}, steps: 2}]"
 COARSE = ["mesh.elements_per_turn=8", "ends=clamped", "accuracy=none", PROGRAM]

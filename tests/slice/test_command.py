@@ -10,12 +10,12 @@ import pytest
 from coilset.meshes.section_shapes import Curve
 from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
-from coilset.model.results.records import summary as of_spring
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
 from coilset.model.slice import output
 from coilset.model.slice.analysis import TOUCHING, SliceAnalysis
 from coilset.model.slice.summary import UNSEEN, summarise
+from coilset.model.summary import summary as of_spring
 from coilset.scripts.commands.slice import slice_case
 from coilset.verification.spring_references.yielding_ring import Ring, Steel, tube
 

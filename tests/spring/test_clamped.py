@@ -6,8 +6,8 @@ from mpi4py import MPI
 
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.case import Case
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.verification.spring_references.coil_by_coil import CoilByCoil
 from coilset.verification.spring_references.curved_rod import clamped_rate
 

@@ -6,11 +6,11 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards import en13906
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.rows import sections
+from coilset.model.summary.summary import summarise
 from coilset.model.uniform_coil.estimate import estimate
 from coilset.verification.spring_references.coil_by_coil import shear_curve
 

@@ -10,8 +10,8 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.case import read_case
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.verification.spring_references.coil_by_coil import CoilByCoil
 from coilset.verification.spring_references.curved_rod import clamped_rate
 

@@ -16,9 +16,9 @@ from coilset.model.report.answer import answer
 from coilset.model.results.quantities import quantities
 from coilset.model.results.records.labels import last_released
 from coilset.model.results.records.provenance import origin
-from coilset.model.results.records.summary import summarise
-from coilset.model.results.run_files import run_of
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.run_files import run_of
+from coilset.model.summary.summary import summarise
 
 HOLD = [{"to": {"travel": 10}, "steps": 1}, {"hold": {"hours": 1000}, "steps": 8}]
 SPRING = {

@@ -11,12 +11,12 @@ from coilset.model.case import check
 from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.curve import CentreLine
 from coilset.model.contact.hold import Guide
-from coilset.model.results.records.summary import summarise
-from coilset.model.results.records.warnings import run_warnings
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards import en13906
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.rows import sections
+from coilset.model.summary.summary import summarise
+from coilset.model.summary.warnings import run_warnings
 from coilset.scripts.terminal.progress import Lines
 from coilset.verification.references.bent_wire import BentWire
 

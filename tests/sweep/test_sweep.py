@@ -21,9 +21,9 @@ from typer.testing import CliRunner
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.material.library import FOLDER
-from coilset.model.results.records.summary import summarise
 from coilset.model.results.records.units import words_and_unit
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.model.sweep import dataset
 from coilset.model.sweep.engines import processes
 from coilset.model.sweep.engines.processes import Workers

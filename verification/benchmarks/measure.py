@@ -151,8 +151,8 @@ def write(watch: Stopwatch, analysis: "Analysis") -> None:
     """Everything that `coilset solve` writes, into a folder that is thrown away."""
     from coilset.model.figures.pictures import PARTS
     from coilset.model.results.records.provenance import origin
-    from coilset.model.results.records.summary import summarise
-    from coilset.model.results.run_files import write_run
+    from coilset.model.summary.run_files import write_run
+    from coilset.model.summary.summary import summarise
 
     records, made_with = (analysis.setup, analysis.result), origin(analysis.case)
     with tempfile.TemporaryDirectory() as folder:

@@ -20,8 +20,8 @@ from mpi4py import MPI
 from coilset.model.base.errors import CoilsetError
 from coilset.model.case import check
 from coilset.model.case.material import case_law
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.verification.random_springs.springs import random_spring
 
 DATA = Path(__file__).with_suffix(".yaml")

@@ -11,7 +11,6 @@ from coilset.meshes.springs.ends import ENDS
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
-from coilset.model.fatigue.strength import Strength
 from coilset.model.results.records.frame import Frame
 from coilset.model.results.records.units import words_and_unit
 from coilset.model.rod.elements import Element
@@ -360,7 +359,7 @@ class Setup:
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
         force_line: ForceLine, or None.
         initial_tension: with which coils are wound onto each other, N; 0: they are not.
-        strength: Strength of the wire in fatigue, or None.
+        strength: coilset.model.fatigue.strength.Strength of the wire, or None.
         bounds: Limits of results.
     """
 
@@ -384,7 +383,7 @@ class Setup:
     coiling_diameter: float | None = None
     force_line: ForceLine | None = None
     initial_tension: float = 0.0
-    strength: Strength | None = None
+    strength: Any = None
     bounds: tuple[Limit, ...] = ()
 
     @property

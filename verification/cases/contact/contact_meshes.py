@@ -20,9 +20,9 @@ from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
 from coilset.model.case import read_case
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
+from coilset.model.summary.summary import summarise
 from coilset.verification.study import Study
 
 SPRINGS = {"cylinder": "block", "cone": "block", "barrel": "{height: 30.0}"}  # and where they are compressed to

@@ -32,8 +32,8 @@ from coilset.model.case import check
 from coilset.model.figures.panels.seats import contact
 from coilset.model.figures.png import draw
 from coilset.model.results.records.provenance import origin
-from coilset.model.results.run_files import run_of
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.run_files import run_of
 from coilset.verification.study import Study
 
 FAST = True

@@ -23,10 +23,10 @@ from coilset.model.case.case import ANGLES, SectionSpec
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.material.point import points
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
 from coilset.model.section.rules import DiskRule, polar
+from coilset.model.summary.summary import summarise
 from coilset.verification.study import Study
 
 FAST = False

@@ -26,8 +26,8 @@ from coilset.model.design.design import find, make_search
 from coilset.model.design.file import read_design_file
 from coilset.model.design.output import found_data
 from coilset.model.design.search import Search
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.verification.study import Study
 
 MESH = {"elements_per_turn": 8, "section": {"radial": 3, "angular": 10}}

@@ -28,9 +28,9 @@ from mpi4py import MPI
 from coilset.model.base.errors import SolveError
 from coilset.model.base.style import STYLE
 from coilset.model.case import read_case
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
+from coilset.model.summary.summary import summarise
 from coilset.verification.study import Study
 
 FAST = False

@@ -31,8 +31,8 @@ from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.summary import summarise
 from coilset.model.uniform_coil.rod import press
 from coilset.verification.study import Study
 

@@ -22,8 +22,8 @@ from mpi4py import MPI
 from coilset.model.base.errors import SolveError
 from coilset.model.base.style import STYLE
 from coilset.model.case import check
-from coilset.model.results.records.warnings import run_warnings
 from coilset.model.run.analysis import Analysis
+from coilset.model.summary.warnings import run_warnings
 from coilset.verification.study import Study
 
 FAST = False

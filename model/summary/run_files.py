@@ -17,8 +17,8 @@ from coilset.model.results.files.folder import (
     write_summary,
 )
 from coilset.model.results.records.record import Result, Setup, Snapshot
-from coilset.model.results.records.summary import summarise
 from coilset.model.section.surface import component, shear
+from coilset.model.summary.summary import summarise
 
 if TYPE_CHECKING:  # loading what reads takes longer than a short run
     from coilset.model.results.files.opened import Run
@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # loading what reads takes longer than a short run
 
 def write_run(out: Path, setup: Setup, result: Result, summary: dict[str, Any], made_with: dict[str, Any]) -> None:
     """Write the results of a run, without pictures, into its folder."""
-    from coilset.model.results.files import dataset
+    from coilset.model.summary import dataset
 
     clear(out, DERIVED)  # a continued run still has the pictures and the page of before
     write_history(out, result.steps)
@@ -49,7 +49,7 @@ def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]
     """fields/NN.vtu: the line mesh at each snapshot with resultants and the maximum stresses, for ParaView."""
     import meshio
 
-    from coilset.model.results.files.dataset import RESULTANTS
+    from coilset.model.summary.dataset import RESULTANTS
 
     folder = subfolder(folder, "fields")
     n = len(setup.turns) - 1

@@ -15,7 +15,6 @@ from coilset.model.results.records.rates import rates, tension, turning
 from coilset.model.results.records.record import Errors, Result, Setup, Snapshot, Step, WorkingState
 from coilset.model.results.records.releases import Release, releases, turned_radius
 from coilset.model.results.records.summary_entries import Summary
-from coilset.model.results.records.warnings import run_warnings
 from coilset.model.results.records.working import LINE, plastic_rise, working_numbers
 from coilset.model.results.stresses import (
     bending,
@@ -30,6 +29,7 @@ from coilset.model.results.stresses import (
 )
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
+from coilset.model.summary.warnings import run_warnings
 
 CROSSINGS = tuple(name for name in LINE if name.startswith("line_"))
 

@@ -12,9 +12,9 @@ from coilset.model.results.fatigue import usage
 from coilset.model.results.files.netcdf import Stack, Variable, write_netcdf
 from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Result, Setup, Snapshot
-from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section.ground import section_points
 from coilset.model.section.rules import SURFACE_POINTS
+from coilset.model.summary.warnings import run_warnings
 
 Variables = dict[str, Variable]
 DRAWN = 144  # points on the outline of a wire that is not round
