@@ -196,8 +196,9 @@ def _of_length(s: Summary) -> str:
 def _of_load(s: Summary) -> str:
     """Which cause has the largest part in the errors."""
     turned = loading_of(s) is Loading.TURNED
-    largest = largest_errors(s.get("estimated_errors"), turned)
-    return f"largest part of the errors ±: {largest}" if largest else "error not estimated"
+    if s.get("estimated_torque_error_Nmm" if turned else "estimated_force_error_N") is None:
+        return "error not estimated"
+    return f"largest part of the errors ±: {largest_errors(s.get('estimated_errors'), turned)}"
 
 
 def _of_tension(s: Summary) -> str:
