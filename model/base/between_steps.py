@@ -22,6 +22,7 @@ import numpy.typing as npt
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
+MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
 FEW = 4  # points: with fewer, lines are straight
 STEADY = 0.1  # of the jump of the rate: by less the rate of open coils changes before they close
 DRAWN = 12  # points from a step to the next

@@ -14,7 +14,7 @@ class Loading(StrEnum):
 
 
 def loading_of(summary: Mapping[str, Any]) -> Loading:
-    """The Loading of a run; folders of every version have the entries that tell it."""
+    """The Loading of a run; it follows from entries that folders of every version have."""
     if summary.get("turn_max_deg") is not None:
         return Loading.TURNED
     return Loading.PULLED if summary.get("force_max_N", 0.0) < 0.0 else Loading.COMPRESSED

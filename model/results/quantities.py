@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from coilset.model.base.between_steps import MAKERS
 from coilset.model.results.loading import Loading, loading_of
 from coilset.model.results.records.labels import held_matters, largest_errors, last_released, plain, within
 from coilset.model.results.records.units import unit_of
@@ -15,7 +16,6 @@ from coilset.model.results.records.units import unit_of
 Summary = Mapping[str, Any]
 DECIMALS = {"mm": 4, "N": 2, "N/mm": 4, "MPa": 1, "°": 3, "N mm": 1, "N mm/°": 3, "%": 2}
 """Most decimals of a number in each unit."""
-MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
 DIGITS = 5  # of a number without an error
 
 

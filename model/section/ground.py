@@ -45,7 +45,7 @@ def points_and_rims(placement: Placement, radius: np.ndarray, curved: bool, rule
     Args:
         placement: of all sections.
         radius: wire radius of each element, shape (cells,), mm.
-        curved: whether the sections know the wire's curvature.
+        curved: whether the sections account for the wire's curvature.
         rule: of the whole section.
     """
     whole, given = rule.outline, (placement, radius, curved, rule.outline)

@@ -17,7 +17,7 @@ from coilset.model.turn import output
 from coilset.model.turn.analysis import GRID, LAYERS, TurnAnalysis, TurnStep
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.console import Console, table
-from coilset.scripts.terminal.progress import duration, quantity
+from coilset.scripts.terminal.progress import duration, with_decimals
 from coilset.scripts.terminal.target import results_folder
 
 NOTE = "both are turns between heads that do not rotate, without coils that touch or seats (docs/solid.md)"
@@ -95,7 +95,7 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
         here, there = summary[entry], summary["rod"][entry]
         if here is not None and there is not None:
             share = "" if not here else f"{100.0 * (there / here - 1.0):+.2f} %"
-            made.add_row(name, quantity(here, unit, digits), quantity(there, unit, digits), share)
+            made.add_row(name, with_decimals(here, unit, digits), with_decimals(there, unit, digits), share)
     console.print(made)
     console.say(NOTE)
     console.say(f"  results in {out}{os.sep}", whole=True)

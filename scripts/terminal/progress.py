@@ -249,7 +249,7 @@ def _pressed(step: "Step | SliceStep") -> str:
     return f"{step.number:5d}{step.seat_height_mm:10.4f}{step.force_N:z12.3f}"
 
 
-def quantity(value: float | None, unit: str, digits: int = 4) -> str:
+def with_decimals(value: float | None, unit: str, digits: int = 4) -> str:
     """A value with its unit; `none` where the run gave none, as of a spring that was not released."""
     return "none" if value is None else f"{value:z.{digits}f} {unit}"
 
@@ -271,7 +271,7 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
         made.add_row(
             length,
             force,
-            quantity(state["rate_N_per_mm"], "", 3).strip(),
+            with_decimals(state["rate_N_per_mm"], "", 3).strip(),
             *("-" if number is None else f"{number:.0f}" for number in numbers),
             f"{state['shear_inside_turn']:.2f}",
             "-" if state["safety"] is None else f"{state['safety']:.2f}",

@@ -1,7 +1,7 @@
 """Continuation along a load path: predict, solve, accept or cut; one loop for rods, frames, probes and solids.
 
-A solve ends in one of two ways: its trial state becomes the equilibrium, or the last equilibrium is restored. How wrong
-steps are, and what happens where a path becomes unstable, others say that are passed in.
+A solve ends in one of two ways: its trial state becomes the equilibrium, or the last equilibrium is restored. The
+estimate of a step's error and the departure from an unstable path are passed in.
 """
 
 import logging

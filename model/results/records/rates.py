@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from coilset.model.base.between_steps import Between, part
-from coilset.model.results.quantities import MAKERS
+from coilset.model.base.between_steps import MAKERS, Between, part
 from coilset.model.results.records.record import Result, Setup, Step
 from coilset.model.results.records.releases import FREE, LEAST_TURN, Release, is_turned
 
