@@ -35,35 +35,35 @@ import xarray as xr
 import yaml
 from mpi4py import MPI
 
-from coilset.model.base.agreement import on_first_rank
-from coilset.model.base.entry import shortened
-from coilset.model.base.errors import CoilsetError, InputError, SolveError, reading
-from coilset.model.case.case import Case as CheckedCase
-from coilset.model.case.case import check, read_case
-from coilset.model.case.settings import put
-from coilset.model.equilibrium.path.step_sizes import StepSizes
-from coilset.model.material import library
-from coilset.model.material.law.condense import condense as _condense
-from coilset.model.material.law.law import Law as _LibraryLaw
-from coilset.model.material.law.own import OwnLaw
-from coilset.model.material.programs import Program
-from coilset.model.material.programs import run as run_program
-from coilset.model.results.characteristic import place_at
-from coilset.model.results.files.folder import make, refuse_results, write_history, write_summary
-from coilset.model.results.files.labelled import labelled
-from coilset.model.results.records.provenance import origin
-from coilset.model.results.records.record import Step
-from coilset.model.run.analysis import Analysis, FurtherContacts
-from coilset.model.run.refinement import within_accuracy
-from coilset.model.runtime.processes import usable_cores
-from coilset.model.runtime.threads import usual
-from coilset.model.summary.run_files import write_run
-from coilset.model.summary.summary import summarise
-from coilset.model.sweep.study import Study as _Study
+from coilset.model.compose.analysis import Analysis, FurtherContacts
+from coilset.model.compose.run_files import write_run
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.agreement import on_first_rank
+from coilset.model.core.base.entry import shortened
+from coilset.model.core.base.errors import CoilsetError, InputError, SolveError, reading
+from coilset.model.core.case.case import Case as CheckedCase
+from coilset.model.core.case.case import check, read_case
+from coilset.model.core.case.settings import put
+from coilset.model.core.equilibrium.path.step_sizes import StepSizes
+from coilset.model.core.material import library
+from coilset.model.core.material.law.condense import condense as _condense
+from coilset.model.core.material.law.law import Law as _LibraryLaw
+from coilset.model.core.results.characteristic import place_at
+from coilset.model.core.results.files.folder import make, refuse_results, write_history, write_summary
+from coilset.model.core.results.files.labelled import labelled
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.core.results.records.record import Step
+from coilset.model.core.runtime.processes import usable_cores
+from coilset.model.core.runtime.threads import usual
+from coilset.model.physics.own_laws.own import OwnLaw
+from coilset.model.tools.further_runs.refinement import within_accuracy
+from coilset.model.tools.identification.programs import Program
+from coilset.model.tools.identification.programs import run as run_program
+from coilset.model.tools.sweep.study import Study as _Study
 
 if TYPE_CHECKING:
-    from coilset.model.vibration.driven import Surge
-    from coilset.model.vibration.modes import Modes
+    from coilset.model.physics.vibration.driven import Surge
+    from coilset.model.physics.vibration.modes import Modes
 
 __all__ = [
     "Case",
@@ -454,10 +454,10 @@ def slice_(case: Case, section: str | None = None) -> Result:
     >>> print(f"{slice_(case).force[-1]:.0f} N")
     162 N
     """
-    from coilset.meshes.section_shapes import parse
-    from coilset.model.slice.analysis import SliceAnalysis, SliceStep
-    from coilset.model.slice.output import write_fields
-    from coilset.model.slice.summary import summarise as summarise_slice
+    from coilset.meshes.sections.shapes import parse
+    from coilset.model.physics.slice.analysis import SliceAnalysis, SliceStep
+    from coilset.model.tools.studies.slice_output import write_fields
+    from coilset.model.tools.studies.slice_summary import summarise as summarise_slice
 
     analysis = SliceAnalysis(Case._given(case), parse(section) if section else None)
     analysis.run()
@@ -490,8 +490,8 @@ def modes(run: Case | str | Path, at: str = "end", count: int = 10, glued: bool 
     >>> print(f"{modes(case, count=1).frequencies[0]:.0f} Hz")
     428 Hz
     """
-    from coilset.model.vibration.loaded import after_results, after_run
-    from coilset.model.vibration.modes import loaded_modes
+    from coilset.model.physics.vibration.modes import loaded_modes
+    from coilset.model.tools.studies.loaded_spring import after_results, after_run
 
     analysis = after_run(run._case, at) if isinstance(run, Case) else after_results(run, at)
     return loaded_modes(analysis, count, glued)
@@ -528,8 +528,8 @@ def surge(
     >>> print(f"{ringing.height[-1]:.1f} mm")
     29.5 mm
     """
-    from coilset.model.vibration.driven import surge as drive
-    from coilset.model.vibration.loaded import after_results, after_run
+    from coilset.model.physics.vibration.driven import surge as drive
+    from coilset.model.tools.studies.loaded_spring import after_results, after_run
 
     analysis = after_run(run._case) if isinstance(run, Case) else after_results(run)
     return drive(analysis, height, seconds, step, spectral_radius)
@@ -560,11 +560,11 @@ def sweep(
     >>> bool((data["status"] == "done").all())
     True
     """
-    from coilset.model.sweep import dataset
-    from coilset.model.sweep.engines.processes import Workers
-    from coilset.model.sweep.journal import Journal
-    from coilset.model.sweep.plan import Plan
-    from coilset.model.sweep.run import finished, missing, run
+    from coilset.model.tools.sweep import dataset
+    from coilset.model.tools.sweep.engines.processes import Workers
+    from coilset.model.tools.sweep.journal import Journal
+    from coilset.model.tools.sweep.plan import Plan
+    from coilset.model.tools.sweep.run import finished, missing, run
 
     checked, folder = Plan(plan), Path(folder)
     make(folder)
@@ -635,10 +635,10 @@ def design(file: str | Path, threads: int | None = None) -> Design:
     >>> sorted(found.found)
     ['loading.0.to.height', 'spring.wire_diameter']
     """
-    from coilset.model.design.design import make_search
-    from coilset.model.design.design import solve as search_for
-    from coilset.model.design.file import read_design_file
-    from coilset.model.design.output import found_data
+    from coilset.model.tools.design.design import make_search
+    from coilset.model.tools.design.design import solve as search_for
+    from coilset.model.tools.design.file import read_design_file
+    from coilset.model.tools.design.output import found_data
 
     wanted = read_design_file(file)
     found = search_for(make_search(wanted, threads=threads or usual(1))).found

@@ -15,10 +15,10 @@ from types import ModuleType
 
 import xarray as xr
 
-from coilset.model.design.opened import FILE, open_design
-from coilset.model.results.characteristic import Run
-from coilset.model.results.diffraction import register
-from coilset.model.results.files.labelled import labelled
+from coilset.model.core.results.characteristic import Run
+from coilset.model.core.results.files.labelled import labelled
+from coilset.model.tools.design.opened import FILE, open_design
+from coilset.model.tools.diffraction.diffraction import register
 
 register()
 

@@ -16,7 +16,7 @@ import entry_pages  # noqa: E402
 import formulas  # noqa: E402
 import python_pages  # noqa: E402
 
-from coilset.model.base.version import __version__  # noqa: E402
+from coilset.model.core.base.version import __version__  # noqa: E402
 
 project, author = "coilset", "the authors of coilset"
 version = release = __version__

@@ -8,7 +8,7 @@ import numpy as np
 from dolfinx import mesh as dmesh
 from mpi4py import MPI
 
-from coilset.model.base.compat import geometry_dofs, to_ranks
+from coilset.model.core.base.compat import geometry_dofs, to_ranks
 
 
 @dataclass

@@ -23,8 +23,8 @@ from annotated_types import Unit
 from pydantic import Field, model_validator
 
 from coilset.meshes.springs.geometry import Spring
-from coilset.model.base.errors import InputError
-from coilset.model.base.strict_entries import Strict
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.strict_entries import Strict
 
 QUARTER = 0.5 * np.pi
 STRAIGHT_ON = 1e-6  # sine of the angle to a direction towards which no wire is bent

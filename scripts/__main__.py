@@ -17,7 +17,7 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _leave)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
-    os.environ.setdefault("PYTHONSAFEPATH", "coilset")  # as scripts/coilset; see coilset.model.runtime.apart
+    os.environ.setdefault("PYTHONSAFEPATH", "coilset")  # as scripts/coilset; see coilset.model.core.runtime.apart
     from coilset.scripts.running import run
 
     run()

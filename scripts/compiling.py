@@ -15,8 +15,8 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from coilset.model.runtime.caches import folder, load_without_compiler, toolchain, version
-from coilset.model.runtime.processes import end_with_parent, first_rank
+from coilset.model.core.runtime.caches import folder, load_without_compiler, toolchain, version
+from coilset.model.core.runtime.processes import end_with_parent, first_rank
 
 STAGES = ("rod", "creep", "uniform", "point")  # see precompile.py; the first run of a spring needs only the first
 NOTICE = "coilset: compiling forms and kernels, once after an installation or a change; this takes a minute or two ..."
@@ -118,7 +118,7 @@ def _missing(stages: Sequence[str]) -> list[str]:
 
 
 def compiled(stage: str) -> Path:
-    """The file that marks a stage as compiled for this version and environment; see coilset.model.runtime.caches."""
+    """The file that marks a stage as compiled for this version and environment; see `runtime/caches.py`."""
     return folder() / f"compiled-{version()}-{toolchain()}-{stage}"
 
 

@@ -20,7 +20,7 @@ INTERRUPTED = 128 + signal.SIGINT  # exit code
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)  # SIGUSR1: how mpirun passes them on, see scripts/ranks.py
 STOPPED = "COILSET_STOPPED"  # variable with the file by which ranks learn of a signal that came before them
 AGAIN = 0.02  # seconds after which SIGTERM is considered again, where no step was being solved
-ITERATION = "coilset.model.equilibrium.newton.snes"  # module whose function `solve` calls PETSc
+ITERATION = "coilset.model.core.equilibrium.newton.snes"  # module whose function `solve` calls PETSc
 ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
 
 

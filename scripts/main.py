@@ -5,9 +5,9 @@ import sys
 from enum import StrEnum
 from pathlib import Path
 
-from coilset.model.base.errors import InputError
-from coilset.model.runtime.apart import OURS, SAFE_PATH
-from coilset.model.runtime.processes import number_of_ranks, stay_on_this_machine, usable_cores
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.runtime.apart import OURS, SAFE_PATH
+from coilset.model.core.runtime.processes import number_of_ranks, stay_on_this_machine, usable_cores
 from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, STAGES, announce_compiling, compile_first
 from coilset.scripts.startup import announce_begin, load_for_solve, typer
@@ -56,7 +56,7 @@ THREADS = typer.Option(
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        from coilset.model.base.version import versions
+        from coilset.model.core.base.version import versions
 
         print(versions())
         raise typer.Exit
@@ -131,7 +131,7 @@ def solve(
 
 
 def _check_case(case: str, settings: list[str]) -> None:
-    from coilset.model.case import read_case
+    from coilset.model.core.case import read_case
 
     read_case(case, settings)
 
@@ -256,8 +256,8 @@ def report(
 @app.command()
 def fields(results: str = RESULTS) -> None:
     """Write time series of a run for ParaView: centre line, wire as a tube, section points."""
-    from coilset.model.figures.series import write_series
-    from coilset.model.results.files.opened import open_run
+    from coilset.model.core.results.files.opened import open_run
+    from coilset.model.tools.figures.series import write_series
 
     for path in write_series(open_run(results)):
         print(path)
@@ -266,8 +266,8 @@ def fields(results: str = RESULTS) -> None:
 @app.command()
 def animate(results: str = RESULTS) -> None:
     """Write an animation of a run: the spring through its load program, coloured by stress."""
-    from coilset.model.figures.animation import animate as draw
-    from coilset.model.results.files.opened import open_run
+    from coilset.model.core.results.files.opened import open_run
+    from coilset.model.tools.figures.animation import animate as draw
 
     path = draw(open_run(results))
     print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
@@ -334,8 +334,8 @@ def sweep(
     pictures: bool = FIGURES,
 ) -> None:
     """Solve many variants of a case."""
-    from coilset.model.sweep.engines.processes import Workers
-    from coilset.model.sweep.shards import Shard, duration
+    from coilset.model.tools.sweep.engines.processes import Workers
+    from coilset.model.tools.sweep.shards import Shard, duration
 
     share = Shard.parse(shard)
     limits = duration(until, "--until"), duration(budget, "--budget")
@@ -365,7 +365,7 @@ def _check_engine(engine: Engine | None, scheduler: str | None) -> None:
 
 
 def _check_sweep(sweep_file: str) -> None:
-    from coilset.model.sweep.plan import Plan
+    from coilset.model.tools.sweep.plan import Plan
 
     Plan(sweep_file)
 
@@ -379,7 +379,7 @@ def design(
     threads: int = THREADS,
 ) -> None:
     """Find entries of a case, such as pitch and preset height, for which its run meets conditions."""
-    from coilset.model.design.file import read_design_file
+    from coilset.model.tools.design.file import read_design_file
 
     compile_first(lambda: read_design_file(file))
     announce_compiling()
@@ -467,7 +467,7 @@ def examples(
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
 ) -> None:
     """List the examples, or copy one as a starting point."""
-    from coilset.model.run import examples as shipped
+    from coilset.model.compose import examples as shipped
 
     if name is not None:
         for path in shipped.copy(shipped.find(name), Path(out), force):

@@ -5,12 +5,12 @@ from collections.abc import Callable, Sequence
 
 from mpi4py import MPI
 
-from coilset.model.case import Case, read_case
-from coilset.model.design.surrogate import guess
-from coilset.model.figures.panels.material_curves import there_and_back
-from coilset.model.material import library
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.examples import EXAMPLES
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.case import Case, read_case
+from coilset.model.core.material import library
+from coilset.model.tools.design.surrogate import guess
+from coilset.model.tools.figures.panels.material_curves import there_and_back
 from coilset.scripts.compiling import STAGES, compiled
 
 LOADING = "loading=[{to: {travel: 16}, steps: 4}, {to: {force: 0}, steps: 1}]"

@@ -18,8 +18,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import IO, Protocol
 
-from coilset.model.base.errors import InputError
-from coilset.model.runtime.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.runtime.processes import (
+    end_with_parent,
+    folder_of_mpirun,
+    mpi_environment,
+    mpirun,
+    usable_cores,
+)
 from coilset.scripts.interrupt import INTERRUPTED, STOPPED
 
 PARALLEL = ("solve", "solid", "sweep", "python")

@@ -10,8 +10,8 @@ from difflib import get_close_matches
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from coilset.model.base.errors import CoilsetError, InputError, printable
-from coilset.model.runtime.processes import first_rank, number_of_ranks
+from coilset.model.core.base.errors import CoilsetError, InputError, printable
+from coilset.model.core.runtime.processes import first_rank, number_of_ranks
 from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL, STOPPED, Output, output_closed
 from coilset.scripts.main import app
 from coilset.scripts.startup import typer
@@ -132,7 +132,7 @@ def _listen() -> None:
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, interrupt)
     if "COILSET_RANKS" in os.environ:
-        from coilset.model.runtime.processes import end_with_parent
+        from coilset.model.core.runtime.processes import end_with_parent
 
         end_with_parent()
         signal.signal(signal.SIGUSR1, interrupt)

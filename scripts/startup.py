@@ -4,10 +4,10 @@ import os
 import sys
 from pathlib import Path
 
-from coilset.model.base.version import __version__
-from coilset.model.runtime.libraries import link_beside
-from coilset.model.runtime.processes import first_rank
-from coilset.model.runtime.switches import enabled
+from coilset.model.core.base.version import __version__
+from coilset.model.core.runtime.libraries import link_beside
+from coilset.model.core.runtime.processes import first_rank
+from coilset.model.core.runtime.switches import enabled
 from coilset.scripts.terminal.target import results_folder
 
 # rich takes longer to load than everything else that `--help` needs
@@ -55,6 +55,6 @@ def load_for_solve() -> None:
     import pydantic.main  # noqa: F401
     import ufl  # noqa: F401
 
-    import coilset.model.contact.build
-    import coilset.model.rod.finer_path
-    import coilset.model.standards.case_warnings  # noqa: F401
+    import coilset.model.compose.contacts
+    import coilset.model.physics.accuracy.finer_path
+    import coilset.model.tools.standards.case_warnings  # noqa: F401

@@ -8,12 +8,12 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
-from coilset.model.material import library
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.rod.elements import THESIS
-from coilset.model.rod.rod import Rod
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.rules import polar
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.material import library
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.rod.elements import THESIS
+from coilset.model.core.rod.rod import Rod
+from coilset.model.core.section.rules import polar
 
 os.environ.setdefault("COILSET_THREADS", "1")  # the tests' own processes run side by side already
 

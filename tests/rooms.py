@@ -14,27 +14,31 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 TOPS = "meshes", "model", "verification", "scripts"
 ALONE = "api.py", "open.py"
-RUN, RESULT = "model/run/analysis.py", "model/results/records/record.py"
+RUN, RESULT = "model/compose/analysis.py", "model/core/results/records/record.py"
 CORE, PACKAGES = "core", ("physics", "tools")
 # files that somebody opens for a typical change
 CHANGES = {
-    "a hardening curve": ["model/material/law/hardening_curves.py", "model/material/law/file.py"],
-    "a kind of contact": ["model/contact/base.py", "model/contact/seat.py", "model/contact/build.py"],
-    "step control": ["model/equilibrium/path/step_sizes.py", "model/equilibrium/settings.py"],
-    "a column of history.csv": ["model/results/records/record.py", "model/run/recorder.py"],
+    "a hardening curve": ["model/core/material/law/hardening_curves.py", "model/core/material/law/file.py"],
+    "a kind of contact": ["model/core/contact/base.py", "model/core/contact/seat.py", "model/compose/contacts.py"],
+    "step control": ["model/core/equilibrium/path/step_sizes.py", "model/core/equilibrium/settings.py"],
+    "a column of history.csv": ["model/core/results/records/record.py", "model/compose/recorder.py"],
     "a number shown everywhere": [
-        "model/results/records/summary_entries.py",
-        "model/summary/summary.py",
-        "model/results/quantities.py",
+        "model/core/results/records/summary_entries.py",
+        "model/compose/summary.py",
+        "model/core/results/quantities.py",
     ],
     "a shape of a spring": ["meshes/springs/shapes.py"],
     "a part of a law": [
-        "model/material/point/stage.py",
-        "model/material/point/increment.py",
-        "model/material/law/file.py",
+        "model/physics/time/stage.py",
+        "model/physics/time/increment.py",
+        "model/core/material/law/file.py",
     ],
-    "a warning": ["model/summary/warnings.py", "model/report/verdict.py", "model/report/warning_words.py"],
-    "a figure": ["model/figures/panels/panel.py", "model/report/page.py", "model/figures/pictures.py"],
+    "a warning": ["model/compose/warnings.py", "model/tools/report/verdict.py", "model/tools/report/warning_words.py"],
+    "a figure": [
+        "model/tools/figures/panels/panel.py",
+        "model/tools/report/page.py",
+        "model/tools/figures/pictures.py",
+    ],
     "a command": ["scripts/main.py", "scripts/commands/report.py"],
 }
 

@@ -8,13 +8,13 @@ import pytest
 
 WAIT = """
 import sys
-from coilset.model.runtime.libraries import UNUSED, LazyModule
+from coilset.model.core.runtime.libraries import UNUSED, LazyModule
 import dolfinx, numba
 print(all(type(sys.modules[name]) is LazyModule for name in UNUSED if name in sys.modules))
 """
 AGAIN = """
 import sys
-from coilset.model.runtime.libraries import LazyModule, LazyFinder
+from coilset.model.core.runtime.libraries import LazyModule, LazyFinder
 sys.meta_path.insert(0, LazyFinder(["matplotlib.pyplot"]))
 import matplotlib.pyplot
 import matplotlib.pyplot as plt

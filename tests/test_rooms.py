@@ -37,8 +37,8 @@ def test_no_import_is_left_that_the_rooms_forbid_but_those_that_are_to_go():
 
 RUN = """
 import sys
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.compose.analysis import Analysis
 Analysis(read_case(sys.argv[1], ["mesh.elements_per_turn=4", "mesh.section={radial: 2, angular: 8}"])).run()
 print(*sys.modules)
 """
@@ -65,14 +65,14 @@ def test_the_parts_of_equilibrium_are_built_on_each_other():
 MOST_FILES, MOST_PARAMETERS = 14, 10
 # What is larger still, with its number: it may become smaller, and nothing may be added.
 PARAMETERS = {
-    "model/rod/forms.py": 1,
-    "model/section/condensation.py": 1,
-    "model/section/fibres.py": 2,
-    "model/section/integration.py": 1,
-    "model/section/warping.py": 2,
-    "model/uniform_coil/rod.py": 1,
+    "model/core/rod/forms.py": 1,
+    "model/physics/warping/condensation.py": 1,
+    "model/core/section/fibres.py": 2,
+    "model/core/section/integration.py": 1,
+    "model/physics/warping/warping.py": 2,
+    "model/physics/uniform_coil/rod.py": 1,
 }
-CTYPES = {"model/equilibrium/system/coo.py", "model/material/law/mfront.py"}
+CTYPES = {"model/core/equilibrium/system/coo.py", "model/physics/own_laws/mfront.py"}
 
 
 def test_a_folder_has_at_most_fourteen_files():
@@ -118,4 +118,4 @@ def test_ctypes_are_used_where_they_are_known_to_be():
         if (isinstance(node, ast.Import) and any(one.name == "ctypes" for one in node.names))
         or (isinstance(node, ast.ImportFrom) and node.module == "ctypes")
     }
-    assert {file for file in users if not file.startswith("model/runtime/")} == CTYPES
+    assert {file for file in users if not file.startswith("model/core/runtime/")} == CTYPES

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.rod import section_states
-from coilset.model.run.analysis import Analysis
-from coilset.model.runtime import threads
-from coilset.model.runtime.threads import LEAST, Threads
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.core.rod import section_states
+from coilset.model.core.runtime import threads
+from coilset.model.core.runtime.threads import LEAST, Threads
 
 
 def test_parts_are_even_and_large_enough():

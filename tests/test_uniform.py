@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from coilset.meshes.springs.manufacture import Relief
-from coilset.model.base.errors import SolveError
-from coilset.model.material import library
-from coilset.model.material.point.loops import with_loop
-from coilset.model.section.rules import polar, upper_half
-from coilset.model.uniform_coil import rod as uniform
-from coilset.model.uniform_coil.past import DISK, coiled
-from coilset.model.uniform_coil.section import Coil, force_shear, integrate, residual_and_tangent, strains
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.material import library
+from coilset.model.core.material.point.loops import with_loop
+from coilset.model.core.section.rules import polar, upper_half
+from coilset.model.physics.manufacture.entries import Relief
+from coilset.model.physics.uniform_coil import rod as uniform
+from coilset.model.physics.uniform_coil.past import DISK, coiled
+from coilset.model.physics.uniform_coil.section import Coil, force_shear, integrate, residual_and_tangent, strains
 
 COIL = np.array([5.0, 40.0, 12.0, 2.5])
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from coilset.model.base.errors import SolveError
-from coilset.model.material import library
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
-from coilset.model.section.rules import DiskRule, polar
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.material import library
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.rules import DiskRule, polar
 from coilset.verification.frame import Frame
 
 ALL = range(6)  # components of a node

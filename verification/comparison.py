@@ -28,14 +28,14 @@ from scipy.interpolate import PchipInterpolator
 
 import coilset.open
 from coilset.api import Case, solve
-from coilset.model.base.columns import Columns, in_our_unit, number, read_columns, scaled
-from coilset.model.base.errors import InputError
-from coilset.model.base.style import STYLE
-from coilset.model.nest.file import NAMES, read_nest
-from coilset.model.nest.nest import press
-from coilset.model.nest.output import write
-from coilset.model.results.diffraction import DIRECTIONS
-from coilset.model.results.records.summary_entries import NUMBERS
+from coilset.model.core.base.columns import Columns, in_our_unit, number, read_columns, scaled
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.results.records.summary_entries import NUMBERS
+from coilset.model.tools.diffraction.diffraction import DIRECTIONS
+from coilset.model.tools.nest.file import NAMES, read_nest
+from coilset.model.tools.nest.nest import press
+from coilset.model.tools.nest.output import write
 
 ROUNDING = 1e-6  # of a measured number or its error, below which a computed one is 0
 DRAWN = 121  # points of a phase's characteristic

@@ -2,7 +2,7 @@
 
     scripts/coilset python verification/control_sensitivity.py [--springs NAME …] [--steps N] [--fields NAME …] …
 
-These are the entries of `solver.control` and what `CONSTANTS` of model/equilibrium/settings.py names.
+These are the entries of `solver.control` and what `CONSTANTS` of model/core/equilibrium/settings.py names.
 Each spring goes to block and back to zero force, once per variant. A number with an upper bound of 1 is doubled at most
 halfway to 1; for a growth factor, which is at least 1, the excess over 1 is halved and doubled; the travel of the probe
 and the numbers of automatic steps are varied like all others. Iterations, evaluated states (updates of the body, those
@@ -25,12 +25,12 @@ from typing import TextIO, get_type_hints
 
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.case import read_case
-from coilset.model.equilibrium.newton.outcome import Outcome
-from coilset.model.equilibrium.settings import CONSTANTS, Growth, NewtonControl, StepControl
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.examples import EXAMPLES
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.case import read_case
+from coilset.model.core.equilibrium.newton.outcome import Outcome
+from coilset.model.core.equilibrium.settings import CONSTANTS, Growth, NewtonControl, StepControl
 from coilset.verification.counting import listen
 
 CONTROLS: dict[str, type[NewtonControl] | type[StepControl]] = {"newton": NewtonControl, "steps": StepControl}
@@ -98,7 +98,7 @@ def numbers() -> dict[str, float | None]:
 def _constant(name: str) -> tuple[ModuleType, str]:
     """The module of a constant, and its name there."""
     module = CONSTANTS[name].removesuffix(".py").replace("/", ".")
-    return importlib.import_module(f"coilset.model.equilibrium.{module}"), name.partition(".")[2].upper()
+    return importlib.import_module(f"coilset.model.core.equilibrium.{module}"), name.partition(".")[2].upper()
 
 
 @contextmanager

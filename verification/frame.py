@@ -8,18 +8,18 @@ from mpi4py import MPI
 from scipy.spatial.transform import Rotation
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.contact.base import Contact
-from coilset.model.equilibrium.newton.contact_limit import ContactLimit
-from coilset.model.equilibrium.newton.methods import rod_method
-from coilset.model.equilibrium.newton.newton import Newton, Start
-from coilset.model.equilibrium.newton.outcome import Outcome
-from coilset.model.equilibrium.path.continuation import Continuation
-from coilset.model.equilibrium.system.layout import SEATS, LineLayout
-from coilset.model.equilibrium.system.load import Load
-from coilset.model.equilibrium.system.system import System
-from coilset.model.material.law.law import Law
-from coilset.model.rod.rod import Rod
-from coilset.model.section.rules import DiskRule
+from coilset.model.core.contact.base import Contact
+from coilset.model.core.equilibrium.newton.contact_limit import ContactLimit
+from coilset.model.core.equilibrium.newton.methods import rod_method
+from coilset.model.core.equilibrium.newton.newton import Newton, Start
+from coilset.model.core.equilibrium.newton.outcome import Outcome
+from coilset.model.core.equilibrium.path.continuation import Continuation
+from coilset.model.core.equilibrium.system.layout import SEATS, LineLayout
+from coilset.model.core.equilibrium.system.load import Load
+from coilset.model.core.equilibrium.system.system import System
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.rod.rod import Rod
+from coilset.model.core.section.rules import DiskRule
 from coilset.verification.frame_mesh import frame_mesh
 
 FREE_PENETRATION = 0.02  # wire diameters that a correction may press, as for springs
@@ -37,7 +37,7 @@ class Frame:
         law: material law.
         rule: DiskRule.
         held: (node, components) pairs that stay fixed; components are 0-2 for x, y, z, 3-5 for rotations.
-        method, options: of coilset.model.equilibrium.newton.methods, and further PETSc options; the tolerance is the
+        method, options: of `equilibrium/newton/methods.py`, and further PETSc options; the tolerance is the
             thesis's 1e-7.
         contacts: kinds of contact.
         placement: of sections beside the chords, as for Rod.

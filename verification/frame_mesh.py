@@ -7,7 +7,7 @@ from dolfinx import mesh as dmesh
 from mpi4py import MPI
 
 from coilset.meshes.line import LineMesh
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 
 
 def frame_mesh(nodes: np.ndarray, pairs: np.ndarray, comm: MPI.Comm) -> LineMesh:

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from coilset.model.base.entry import shortened
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.entry import shortened
+from coilset.model.core.base.errors import InputError
 from coilset.verification import cases
 from coilset.verification.study import Study
 

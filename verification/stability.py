@@ -4,9 +4,9 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import eigsh, splu
 
-from coilset.model.equilibrium.system.load import Load
-from coilset.model.equilibrium.system.matrix import TangentMatrix
-from coilset.model.equilibrium.system.system import System
+from coilset.model.core.equilibrium.system.load import Load
+from coilset.model.core.equilibrium.system.matrix import TangentMatrix
+from coilset.model.core.equilibrium.system.system import System
 
 
 def tangent(system: System, load: Load) -> sparse.csc_array:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from coilset.model.contact.base import Contact, Contribution, TrialPositions, one_sided
+from coilset.model.core.contact.base import Contact, Contribution, TrialPositions, one_sided
 
 
 class Stops(Contact):

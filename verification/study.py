@@ -10,8 +10,8 @@ from typing import Any, SupportsFloat
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.figures.png import add_title, save
-from coilset.model.results.files.folder import make, whole
+from coilset.model.core.results.files.folder import make, whole
+from coilset.model.tools.figures.png import add_title, save
 
 KINDS = ("relative", "absolute", "at_most")
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.contact.curve import CentreLine, WirePoints
+from coilset.model.core.contact.curve import CentreLine, WirePoints
 
 
 def wire_points(stations: np.ndarray, radius: float | np.ndarray, turns: np.ndarray | None = None) -> WirePoints:

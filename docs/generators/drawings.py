@@ -12,12 +12,12 @@ import matplotlib as mpl
 import pyvista as pv
 from matplotlib.figure import Figure
 
-from coilset.meshes import view
-from coilset.model.base.style import STYLE
-from coilset.model.case import read_case
-from coilset.model.figures import display
-from coilset.model.figures.png import save
-from coilset.model.run.examples import EXAMPLES
+from coilset.meshes.drawings import view
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import read_case
+from coilset.model.tools.figures import display
+from coilset.model.tools.figures.png import save
 from coilset.verification.spring_references import progressive, representation
 
 SHAPES = (

@@ -3,14 +3,14 @@
 import re
 from pathlib import Path
 
-from coilset.model.case import reference
-from coilset.model.case.case import Case
-from coilset.model.case.reference import Form, Group, Row
-from coilset.model.design.file import DesignFile
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.programs import Program
-from coilset.model.nest.file import NestFile
-from coilset.model.sweep.spec import SweepSpec
+from coilset.model.core.case import reference
+from coilset.model.core.case.case import Case
+from coilset.model.core.case.reference import Form, Group, Row
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.tools.design.file import DesignFile
+from coilset.model.tools.identification.programs import Program
+from coilset.model.tools.nest.file import NestFile
+from coilset.model.tools.sweep.spec import SweepSpec
 
 FILES = {  # name of the page: its title, what the file is for, its model
     "case": (

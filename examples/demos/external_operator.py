@@ -20,10 +20,10 @@ import ufl
 from dolfinx import fem, mesh
 from mpi4py import MPI
 
-from coilset.model.material import library
-from coilset.model.material.point.points import initial_state, update
-from coilset.model.material.programs import Program
-from coilset.model.material.programs import run as run_program
+from coilset.model.core.material import library
+from coilset.model.core.material.point.points import initial_state, update
+from coilset.model.tools.identification.programs import Program
+from coilset.model.tools.identification.programs import run as run_program
 
 length, radius, elements = 50.0, 10.0, 6  # mm
 law = library.load("chaboche")

@@ -20,7 +20,7 @@ from dolfinx import fem
 from mpi4py import MPI
 
 from coilset.api import Case, slice_
-from coilset.model.base.compat import mesh_from_gmsh  # dolfinx.io.gmshio.model_to_mesh, under its names so far
+from coilset.model.core.base.compat import mesh_from_gmsh  # dolfinx.io.gmshio.model_to_mesh, under its names so far
 
 d, D, pitch, turns = 5.0, 30.0, 11.0, 5.0  # mm
 E, ν, yield_stress, H = 210e3, 0.3, 400.0, 2000.0  # MPa; H: slope of stress over plastic strain

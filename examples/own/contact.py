@@ -6,7 +6,7 @@ scripts/coilset python examples/own/contact.py
 import numpy as np
 
 from coilset.api import Case, solve
-from coilset.model.contact.base import Contact, Contribution, TrialPositions, one_sided
+from coilset.model.core.contact.base import Contact, Contribution, TrialPositions, one_sided
 
 STIFFNESS, ONSET = 2000.0, 0.005  # of each station, N/mm, and the distance over which contact sets in, mm
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from coilset.api import Case, Law, condense, solve
-from coilset.model.material.law import mfront
+from coilset.model.physics.own_laws import mfront
 
 STAND_IN = """
 #include <math.h>

@@ -6,7 +6,7 @@ scripts/coilset python examples/own/steps.py
 import numpy as np
 
 from coilset.api import Case, solve
-from coilset.model.equilibrium.path.step_sizes import Path, StepSizes
+from coilset.model.core.equilibrium.path.step_sizes import Path, StepSizes
 
 FIRST, FACTOR = 0.02, 1.5  # of a phase, and from step to step
 

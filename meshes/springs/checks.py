@@ -8,7 +8,7 @@ import numpy as np
 
 from coilset.meshes.springs.block import TOUCH
 from coilset.meshes.springs.ends import touching_pitch
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 
 if TYPE_CHECKING:
     from coilset.meshes.springs.geometry import Spring

@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
-from coilset.model.base.strict_entries import Strict
+from coilset.model.core.base.strict_entries import Strict
 
 ENDS = ("bottom", "top")
 

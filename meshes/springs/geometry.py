@@ -12,7 +12,7 @@ from coilset.meshes.springs.block import TOUCH, block_height
 from coilset.meshes.springs.ends import OPEN, EndCoils
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.stations import ElementsPerTurn, stations
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 
 INTERVALS_PER_TURN = 64
 SAME = 1e-9  # relative difference of a height from a bound that is rounding

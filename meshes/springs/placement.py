@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from coilset.meshes.springs.geometry import Spring
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 
 STRAIGHT = 1e-9  # curvature, 1/mm, below which a section has no normal
 

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
-from coilset.model.base.strict_entries import Strict
+from coilset.model.core.base.strict_entries import Strict
 
 SHORTEST, LONGEST = 1e-3, 1e5  # mm
 CLOSEST = 1e-3  # turns

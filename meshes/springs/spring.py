@@ -14,9 +14,9 @@ from coilset.meshes.springs.ends import OPEN, Ends, bottom_and_top, pitch_with_e
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.piecewise import PiecewisePolynomial
 from coilset.meshes.springs.shapes import CurvedAxis, DiameterProfile, Length, Profile, profile_function
-from coilset.model.base.errors import InputError
-from coilset.model.base.package import Entry
-from coilset.model.base.strict_entries import Strict
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.package import Entry
+from coilset.model.core.base.strict_entries import Strict
 
 PAST = "made_by", "peening", "initial_tension"  # entries that leave stress in the wire before its first load
 DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wire diameters to add for the mean one
@@ -36,7 +36,7 @@ class SpringSpec(Strict):
     ] = None
     wire: Annotated[
         Any,
-        Entry("coilset.meshes.springs.wire_section:WireSpec"),
+        Entry("coilset.meshes.sections.wire_section:WireSpec"),
         Field(description="section of a wire that is not round"),
     ] = None
     mean_diameter: Annotated[
@@ -75,7 +75,7 @@ class SpringSpec(Strict):
     ] = None
     relieved: Annotated[
         Any,
-        Entry("coilset.meshes.springs.manufacture:Relief"),
+        Entry("coilset.model.physics.manufacture.entries:Relief"),
         Field(description="stress relief of the coiled wire, before peening and before the first load"),
     ] = None
     initial_tension: Annotated[
@@ -89,7 +89,7 @@ class SpringSpec(Strict):
     ] = None
     peening: Annotated[
         Any,
-        Entry("coilset.meshes.springs.manufacture:Peening"),
+        Entry("coilset.model.physics.manufacture.entries:Peening"),
         Field(description="shot peening of the wire, before the first load; left out: none"),
     ] = None
     hooks: Annotated[
@@ -282,7 +282,7 @@ def _origin(value: Any) -> str:
 
 SpringEntry = Annotated[
     Annotated[SpringSpec, Tag("(drawn)")]
-    | Annotated[Any, Entry("coilset.meshes.springs.measured:MeasuredSpec"), Tag("(measured)")],
+    | Annotated[Any, Entry("coilset.meshes.measured.measured:MeasuredSpec"), Tag("(measured)")],
     Discriminator(_origin),
 ]
 """The `spring:` section of the case file; a spring with the entry `file` is a measured one."""

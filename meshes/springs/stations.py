@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field, Tag
 
 from coilset.meshes.springs import functions
 from coilset.meshes.springs.shapes import Table, form_of_entry
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 
 LEAST, MOST = 3, 1_000_000  # elements per turn
 ALL = 10_000_000  # elements of a whole spring

@@ -14,8 +14,8 @@ from typing import Any
 
 from rich.table import Table
 
-from coilset.model.results.files.folder import clear, make, whole
-from coilset.model.runtime.processes import folder_of_mpirun, mpi_settings, mpirun, usable_cores
+from coilset.model.core.results.files.folder import clear, make, whole
+from coilset.model.core.runtime.processes import folder_of_mpirun, mpi_settings, mpirun, usable_cores
 from coilset.scripts.terminal.console import Console, table
 from coilset.scripts.terminal.spring_costs import comparison, cost_table
 from coilset.verification.benchmarks.everyday import MEASURED, everyday, launchers, of_a_new_command

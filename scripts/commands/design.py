@@ -6,18 +6,18 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
-from coilset.model.base.errors import InputError, naming
-from coilset.model.case.names import entry_name
-from coilset.model.design import output
-from coilset.model.design.choices import Options
-from coilset.model.design.design import Solution, make_search, solve
-from coilset.model.design.evaluation import Evaluation
-from coilset.model.design.file import Design, read_design_file
-from coilset.model.design.search import TOLERANCE, Search
-from coilset.model.design.trade_offs import TradeOff, trade_offs
-from coilset.model.results.files.folder import clear, making
-from coilset.model.runtime.threads import usual
-from coilset.model.sweep.journal import Journal, read_records
+from coilset.model.core.base.errors import InputError, naming
+from coilset.model.core.case.names import entry_name
+from coilset.model.core.results.files.folder import clear, making
+from coilset.model.core.runtime.threads import usual
+from coilset.model.tools.design import output
+from coilset.model.tools.design.choices import Options
+from coilset.model.tools.design.design import Solution, make_search, solve
+from coilset.model.tools.design.evaluation import Evaluation
+from coilset.model.tools.design.file import Design, read_design_file
+from coilset.model.tools.design.search import TOLERANCE, Search
+from coilset.model.tools.design.trade_offs import TradeOff, trade_offs
+from coilset.model.tools.sweep.journal import Journal, read_records
 from coilset.scripts.terminal.console import Console, styled, table
 from coilset.scripts.terminal.log import run_log
 from coilset.scripts.terminal.target import results_folder

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from coilset.model.base.errors import InputError, naming
+from coilset.model.core.base.errors import InputError, naming
 from coilset.scripts.commands.fitting import relaxation, springs
 from coilset.scripts.commands.fitting.files import files_to_write, write_material, write_picture
 from coilset.scripts.compiling import announce_compiling
@@ -14,8 +14,8 @@ from coilset.scripts.terminal.target import OVERWRITE, folder_target
 if TYPE_CHECKING:  # commands load what they need
     from rich.table import Table
 
-    from coilset.model.material.law.law import Law
-    from coilset.model.material.programs import History, Program
+    from coilset.model.core.material.law.law import Law
+    from coilset.model.tools.identification.programs import History, Program
 
 app = typer.Typer(
     cls=springs.MaterialGroup,
@@ -41,8 +41,8 @@ FORCE = typer.Option(False, *OVERWRITE, help="overwrite existing files")
 @app.command()
 def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     """Print a material's constants and draw k², ζ and 2Gκ over the plastic work."""
-    from coilset.model.material import library
-    from coilset.model.material.identification import figures
+    from coilset.model.core.material import library
+    from coilset.model.tools.identification import figures
     from coilset.scripts.terminal.console import Console, styled
 
     law = library.load(material)
@@ -63,9 +63,9 @@ def run_program(
     force: bool = FORCE,
 ) -> None:
     """Drive one material point through a program of strain and stress, and draw the result."""
-    from coilset.model.material import library, programs
-    from coilset.model.material.identification import figures
-    from coilset.model.results.files.folder import make
+    from coilset.model.core.material import library
+    from coilset.model.core.results.files.folder import make
+    from coilset.model.tools.identification import figures, programs
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
@@ -96,8 +96,8 @@ def certificate(
     """Write a material file from what a wire's certificate states, and print what it assumes."""
     import yaml
 
-    from coilset.model.results.files.folder import make, whole
-    from coilset.model.standards.wires.certificate import Certificate
+    from coilset.model.core.results.files.folder import make, whole
+    from coilset.model.tools.wires.certificate import Certificate
     from coilset.scripts.terminal.console import Console
 
     (file,) = files_to_write(out, name, force, f"{name}.yaml")
@@ -143,10 +143,10 @@ def fit(
     """
     from rich.table import Table
 
-    from coilset.model.material.identification import cyclic, experiments, figures
-    from coilset.model.material.identification import fit as fitting
-    from coilset.model.material.identification.elastic_part import corrected
-    from coilset.model.material.law.file import UNITS
+    from coilset.model.core.material.law.file import UNITS
+    from coilset.model.tools.identification import cyclic, experiments, figures
+    from coilset.model.tools.identification import fit as fitting
+    from coilset.model.tools.identification.elastic_part import corrected
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
@@ -198,10 +198,10 @@ def creep(
     """Fit the constants of creep to relaxation tests, catalogue points or load losses of springs."""
     from rich.table import Table
 
-    from coilset.model.material import library
-    from coilset.model.material.creep.forms import FORMS
-    from coilset.model.material.identification.creep_figure import creep_figure
-    from coilset.model.material.identification.creep_fit import UNITS, fit_creep
+    from coilset.model.core.material import library
+    from coilset.model.physics.time.creep.forms import FORMS
+    from coilset.model.tools.identification.creep_figure import creep_figure
+    from coilset.model.tools.identification.creep_fit import UNITS, fit_creep
     from coilset.scripts.terminal.console import Console
 
     for value, known, option in (
@@ -233,7 +233,7 @@ def creep(
 
 
 def _write_csv(path: Path, history: "History") -> None:
-    from coilset.model.results.files.folder import write_table
+    from coilset.model.core.results.files.folder import write_table
 
     names, values = zip(*history.columns(), strict=True)
     write_table(path, names, zip(*(column.tolist() for column in values), strict=True))
@@ -256,7 +256,7 @@ def _ends(program: "Program", history: "History") -> "Table":
     """Table of the state at the end of each step: the strains and stresses of the program, and b*."""
     import numpy as np
 
-    from coilset.model.material.identification.figures import SYMBOLS
+    from coilset.model.tools.identification.figures import SYMBOLS
     from coilset.scripts.terminal.console import table
 
     names = {**SYMBOLS, "plastic_work": "b*", "temperature": "T"}

@@ -7,14 +7,14 @@ from pathlib import Path
 from mpi4py import MPI
 
 from coilset.meshes.springs.spring import Spring
-from coilset.model.base.errors import CoilsetError, InputError, naming
-from coilset.model.case import UnloadedCase, read_case
-from coilset.model.case.loading import is_pressed, is_turned
-from coilset.model.case.material import case_elastic, case_law
-from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
-from coilset.model.standards.buckling import seating_of
-from coilset.model.standards.spring_data import spring_data
-from coilset.model.standards.spring_warnings import spring_warnings
+from coilset.model.core.base.errors import CoilsetError, InputError, naming
+from coilset.model.core.case import UnloadedCase, read_case
+from coilset.model.core.case.loading import is_pressed, is_turned
+from coilset.model.core.case.material import case_elastic, case_law
+from coilset.model.core.results.files.folder import DRAWN, make, refuse_to_replace, whole
+from coilset.model.tools.standards.buckling import seating_of
+from coilset.model.tools.standards.spring_data import spring_data
+from coilset.model.tools.standards.spring_warnings import spring_warnings
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
 
@@ -38,7 +38,7 @@ def mesh(
     console = Console()
     case = read_case(case_file, settings, UnloadedCase)
     if write:
-        from coilset.meshes.export import check_format, write_mesh
+        from coilset.meshes.drawings.export import check_format, write_mesh
 
         for path in write:
             if not _is_body(path):
@@ -60,7 +60,7 @@ def mesh(
         try:
             with whole(path) as partial:
                 if _is_body(path):
-                    from coilset.meshes.step import step
+                    from coilset.meshes.drawings.step import step
 
                     partial.write_bytes(step(spring)[0])
                 else:
@@ -81,12 +81,12 @@ def _is_body(path: str | Path) -> bool:
 def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:
     import matplotlib as mpl
 
-    from coilset.meshes import drawing, view
-    from coilset.model.base.style import STYLE
-    from coilset.model.figures import display
-    from coilset.model.figures.pictures import not_drawn
-    from coilset.model.figures.png import save
-    from coilset.model.results.records.labels import plain
+    from coilset.meshes.drawings import drawing, view
+    from coilset.model.core.base.style import STYLE
+    from coilset.model.core.results.records.labels import plain
+    from coilset.model.tools.figures import display
+    from coilset.model.tools.figures.pictures import not_drawn
+    from coilset.model.tools.figures.png import save
 
     def side_view(path: Path) -> None:
         size = f"{plain(spring.turns)} turns, {plain(spring.free_length)} mm long"

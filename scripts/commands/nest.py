@@ -7,14 +7,14 @@ from typing import Any
 from mpi4py import MPI
 from rich.table import Table
 
-from coilset.model.nest import output
-from coilset.model.nest.file import read_nest
-from coilset.model.nest.nest import Pressed, press
-from coilset.model.results.files.folder import refuse_results
-from coilset.model.results.quantities import quantity
-from coilset.model.results.records.labels import plain
-from coilset.model.results.records.record import Step
-from coilset.model.runtime.threads import usual
+from coilset.model.core.results.files.folder import refuse_results
+from coilset.model.core.results.quantities import quantity
+from coilset.model.core.results.records.labels import plain
+from coilset.model.core.results.records.record import Step
+from coilset.model.core.runtime.threads import usual
+from coilset.model.tools.nest import output
+from coilset.model.tools.nest.file import read_nest
+from coilset.model.tools.nest.nest import Pressed, press
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError, SolveError, reading
-from coilset.model.design.opened import read_design
-from coilset.model.report import design_page, nest_page, sweep_page
-from coilset.model.report.page import write_report
-from coilset.model.report.render import NAME
-from coilset.model.results.files.folder import subfolder
-from coilset.model.results.files.opened import open_run
+from coilset.model.core.base.errors import InputError, SolveError, reading
+from coilset.model.core.results.files.folder import subfolder
+from coilset.model.core.results.files.opened import open_run
+from coilset.model.tools.design.opened import read_design
+from coilset.model.tools.report import design_page, nest_page, sweep_page
+from coilset.model.tools.report.page import write_report
+from coilset.model.tools.report.render import NAME
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.console import Console
 

@@ -11,28 +11,29 @@ from mpi4py import MPI
 from rich.text import Text
 
 from coilset.meshes.springs.spring import Spring
-from coilset.model.base.errors import InputError, naming
-from coilset.model.base.warning import Warning
-from coilset.model.case import Case, UnloadedCase, read_case
-from coilset.model.case.loading import is_pressed
-from coilset.model.case.material import case_law
-from coilset.model.figures.panels.goodman import goodman as diagram_of
-from coilset.model.figures.png import write_png
-from coilset.model.report.document.words import Language, Words
-from coilset.model.results.files.folder import make, refuse_to_replace
-from coilset.model.standards import from_results, goodman
-from coilset.model.standards.buckling import seating_of
-from coilset.model.standards.case_sheet import case_sheet
-from coilset.model.standards.case_warnings import sheet_warnings, warm_warnings
-from coilset.model.standards.en15800 import GRADES
-from coilset.model.standards.rows import Row, sections
-from coilset.model.standards.sheet import Sheet
-from coilset.model.standards.spring_warnings import spring_warnings
-from coilset.model.standards.wires import names, wire
-from coilset.model.standards.wires.library import files, own_folder
-from coilset.model.standards.wires.wire_file import Surface
-from coilset.model.standards.wires.words import WIRE_COLUMNS, described, table_row
-from coilset.model.standards.working_warnings import presetting_warning
+from coilset.model.core.base.errors import InputError, naming
+from coilset.model.core.base.warning import Warning
+from coilset.model.core.case import Case, UnloadedCase, read_case
+from coilset.model.core.case.loading import is_pressed
+from coilset.model.core.case.material import case_law
+from coilset.model.core.results.files.folder import make, refuse_to_replace
+from coilset.model.tools.document.words import Language, Words
+from coilset.model.tools.figures.panels.goodman import goodman as diagram_of
+from coilset.model.tools.figures.png import write_png
+from coilset.model.tools.sheet import from_results
+from coilset.model.tools.sheet.rows import Row, sections
+from coilset.model.tools.standards import goodman
+from coilset.model.tools.standards.buckling import seating_of
+from coilset.model.tools.standards.case_sheet import case_sheet
+from coilset.model.tools.standards.case_warnings import sheet_warnings, warm_warnings
+from coilset.model.tools.standards.en15800 import GRADES
+from coilset.model.tools.standards.sheet import Sheet
+from coilset.model.tools.standards.spring_warnings import spring_warnings
+from coilset.model.tools.standards.working_warnings import presetting_warning
+from coilset.model.tools.wires import names, wire
+from coilset.model.tools.wires.library import files, own_folder
+from coilset.model.tools.wires.wire_file import Surface
+from coilset.model.tools.wires.words import WIRE_COLUMNS, described, table_row
 from coilset.scripts.terminal.console import Console, styled
 from coilset.scripts.terminal.target import SHEETS, results_folder
 
@@ -89,8 +90,8 @@ def sheet(case_file: str | Path | None, options: Options) -> None:
     console = Console()
     warnings = _print(console, case, spring, made, options.results)
     if files:
-        from coilset.model.report.document.content import document
-        from coilset.model.report.document.output import write
+        from coilset.model.tools.document.content import document
+        from coilset.model.tools.document.output import write
 
         name = Path(options.results).resolve().name if options.results else ""
         content = document(case, spring, made, name, warnings, Words(options.language))

@@ -7,16 +7,16 @@ from typing import Any
 
 from mpi4py import MPI
 
-from coilset.meshes.section_shapes import parse
+from coilset.meshes.sections.shapes import parse
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.case import Case, read_case
-from coilset.model.results.files.folder import clear, prepare, write_history, write_summary
-from coilset.model.results.quantities import quantities
-from coilset.model.results.records.provenance import origin
-from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
-from coilset.model.slice.summary import summarise
-from coilset.model.standards.case_warnings import case_warnings
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.case import Case, read_case
+from coilset.model.core.results.files.folder import clear, prepare, write_history, write_summary
+from coilset.model.core.results.quantities import quantities
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.physics.slice.analysis import ACROSS, SliceAnalysis, SliceStep
+from coilset.model.tools.standards.case_warnings import case_warnings
+from coilset.model.tools.studies.slice_summary import summarise
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.progress import HEAD, step_row
 from coilset.scripts.terminal.target import results_folder
@@ -83,7 +83,7 @@ def _placed(error: InputError, case: Case, case_file: str | Path) -> InputError:
 
 
 def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures: bool) -> None:
-    from coilset.model.slice import output
+    from coilset.model.tools.studies import slice_output as output
 
     clear(out)
     write_history(out, analysis.result.steps, SliceStep)

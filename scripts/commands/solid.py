@@ -7,14 +7,14 @@ from typing import Any
 
 from mpi4py import MPI
 
-from coilset.meshes.solid_grid import SectionGrid
-from coilset.model.base.agreement import on_first_rank
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.case import read_case
-from coilset.model.results.files.folder import clear, prepare, write_history, write_summary
-from coilset.model.results.records.provenance import origin
-from coilset.model.turn import output
-from coilset.model.turn.analysis import GRID, LAYERS, TurnAnalysis, TurnStep
+from coilset.meshes.solids.grid import SectionGrid
+from coilset.model.core.base.agreement import on_first_rank
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.case import read_case
+from coilset.model.core.results.files.folder import clear, prepare, write_history, write_summary
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.tools.studies import turn_output as output
+from coilset.model.tools.studies.turn import GRID, LAYERS, TurnAnalysis, TurnStep
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.console import Console, table
 from coilset.scripts.terminal.progress import duration, with_decimals

@@ -10,18 +10,18 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from coilset.model.base.agreement import on_first_rank
-from coilset.model.base.errors import CoilsetError, InputError, SolveError, naming
-from coilset.model.case import Case, read_case
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.files.folder import DRAWN, RESULTS, clear, prepare
-from coilset.model.results.records.provenance import origin
-from coilset.model.results.records.record import Step
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.refinement import within_accuracy
-from coilset.model.runtime.threads import usual
-from coilset.model.summary.run_files import write_run
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_files import write_run
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.agreement import on_first_rank
+from coilset.model.core.base.errors import CoilsetError, InputError, SolveError, naming
+from coilset.model.core.case import Case, read_case
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.results.files.folder import DRAWN, RESULTS, clear, prepare
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.core.results.records.record import Step
+from coilset.model.core.runtime.threads import usual
+from coilset.model.tools.further_runs.refinement import within_accuracy
 from coilset.scripts.compiling import compile_first
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.drawing import Drawings

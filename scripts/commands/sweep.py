@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.results.files.folder import clear, making, refuse_obstacles
-from coilset.model.sweep import multifidelity, parquet
-from coilset.model.sweep.engines.pool import Pool
-from coilset.model.sweep.engines.processes import Workers
-from coilset.model.sweep.journal import Journal, Records, journals, read_records
-from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.run import Limits, finished, missing, run
-from coilset.model.sweep.shards import WHOLE, Shard
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.results.files.folder import clear, making, refuse_obstacles
+from coilset.model.tools.sweep import multifidelity, parquet
+from coilset.model.tools.sweep.engines.pool import Pool
+from coilset.model.tools.sweep.engines.processes import Workers
+from coilset.model.tools.sweep.journal import Journal, Records, journals, read_records
+from coilset.model.tools.sweep.plan import Plan
+from coilset.model.tools.sweep.run import Limits, finished, missing, run
+from coilset.model.tools.sweep.shards import WHOLE, Shard
 from coilset.scripts.terminal.console import Console, table
 from coilset.scripts.terminal.log import only_run
 from coilset.scripts.terminal.target import results_folder
@@ -67,7 +67,7 @@ def sweep(sweep_file: str, out: str | None, workers: Workers, options: Options) 
     """
     from mpi4py import MPI
 
-    from coilset.model.base.agreement import on_first_rank
+    from coilset.model.core.base.agreement import on_first_rank
 
     comm = MPI.COMM_WORLD
     folder = results_folder(out, Path(sweep_file).stem)
@@ -112,12 +112,12 @@ def _prepare(sweep_file: str, out: Path, options: Options, held: ExitStack) -> P
 @contextmanager
 def _pool(comm: "MPI.Comm", workers: Workers, options: Options, out: Path) -> Iterator[Pool | None]:
     if options.scheduler is not None:
-        from coilset.model.sweep.engines.dask import dask_pool
+        from coilset.model.tools.sweep.engines.dask import dask_pool
 
         with dask_pool(options.scheduler) as pool:
             yield pool
     elif comm.size > 1:
-        from coilset.model.sweep.engines.mpi import mpi_pool
+        from coilset.model.tools.sweep.engines.mpi import mpi_pool
 
         with mpi_pool(comm, options.ranks_per_case) as pool:
             yield pool
@@ -193,11 +193,11 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
         console.warn("sweep.parquet is not written: the package pyarrow is not installed")
     else:  # before xarray and matplotlib, so that memory need not hold both
         of_rods = list(multifidelity.lines(plan, partial(multifidelity.of_parquet, out / "sweep.parquet")))
-    from coilset.model.figures.png import write_png  # after the cases: xarray and matplotlib take half a second
-    from coilset.model.sweep import dataset
-    from coilset.model.sweep.figures import capability
-    from coilset.model.sweep.figures.figures import FILES, draw
-    from coilset.model.sweep.figures.limits import histogram
+    from coilset.model.tools.figures.png import write_png  # after the cases: xarray and matplotlib take half a second
+    from coilset.model.tools.sweep import dataset
+    from coilset.model.tools.sweep.figures import capability
+    from coilset.model.tools.sweep.figures.figures import FILES, draw
+    from coilset.model.tools.sweep.figures.limits import histogram
 
     data = dataset.collect(plan, out)
     clear(out, ("limits.png", *FILES))

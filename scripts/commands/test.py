@@ -7,8 +7,14 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from coilset.model.base.errors import InputError
-from coilset.model.runtime.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.runtime.processes import (
+    end_with_parent,
+    folder_of_mpirun,
+    mpi_environment,
+    mpirun,
+    usable_cores,
+)
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 # tests that solve springs or solids to the end, or start the command: minutes, where most others take seconds; both

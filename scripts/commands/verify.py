@@ -9,8 +9,8 @@ from pathlib import Path
 from mpi4py import MPI
 from rich.table import Table
 
-from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.results.files.folder import make, whole
+from coilset.model.core.base.errors import CoilsetError, InputError
+from coilset.model.core.results.files.folder import make, whole
 from coilset.scripts.terminal.console import Console, styled, table
 from coilset.verification import registry
 from coilset.verification.page import page, percent

@@ -7,16 +7,16 @@ import numpy as np
 from mpi4py import MPI
 from rich.table import Table
 
-from coilset.model.base.agreement import on_first_rank
-from coilset.model.base.errors import InputError
-from coilset.model.base.version import __version__
-from coilset.model.results.records.labels import plain
-from coilset.model.run.analysis import Analysis
-from coilset.model.vibration.driven import Driven, driven
-from coilset.model.vibration.lift import Lift, read_lift, valve_lift
-from coilset.model.vibration.loaded import after_results
-from coilset.model.vibration.modes import Modes, loaded_modes
-from coilset.model.vibration.surge_output import draw_surge, summarise, write_surge
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.agreement import on_first_rank
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.version import __version__
+from coilset.model.core.results.records.labels import plain
+from coilset.model.physics.vibration.driven import Driven, driven
+from coilset.model.physics.vibration.lift import Lift, read_lift, valve_lift
+from coilset.model.physics.vibration.modes import Modes, loaded_modes
+from coilset.model.tools.studies.loaded_spring import after_results
+from coilset.model.tools.studies.surge_output import draw_surge, summarise, write_surge
 from coilset.scripts.terminal.console import Console
 
 NOTE = (
@@ -49,7 +49,7 @@ def modes(results: str, at: str, count: int, glued: bool, pictures: bool) -> Non
 
 
 def _write(folder: Path, found: Modes, analysis: Analysis, x: np.ndarray, title: str) -> None:
-    from coilset.model.vibration.output import draw_modes, write_modes
+    from coilset.model.tools.studies.modes_output import draw_modes, write_modes
 
     write_modes(folder, found, analysis.setup.turns, x, analysis.setup.wire_radius)
     if title:

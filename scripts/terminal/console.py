@@ -11,8 +11,8 @@ from rich import console
 from rich.table import Table
 from rich.text import Text
 
-from coilset.model.base.errors import printable
-from coilset.model.results.quantities import Quantity
+from coilset.model.core.base.errors import printable
+from coilset.model.core.results.quantities import Quantity
 
 ORDERS = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 

@@ -18,11 +18,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.runtime.libraries import LazyFinder
-from coilset.model.runtime.processes import end_with_parent, first_rank, number_of_ranks, usable_cores
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.runtime.libraries import LazyFinder
+from coilset.model.core.runtime.processes import end_with_parent, first_rank, number_of_ranks, usable_cores
 
-PARTS = ("figures", "scene")  # of coilset.model.figures.pictures
+PARTS = ("figures", "scene")  # of coilset.model.tools.figures.pictures
 MODEST = 5  # niceness of these processes relative to the one that solves
 PATIENCE = 5.0  # seconds that a terminated process has for cleaning up
 
@@ -129,7 +129,7 @@ def _ended(status: int) -> dict[str, Any]:
 
 def draw_part(part: str, task: BinaryIO) -> dict[str, Any] | None:
     """Load the libraries of a part, wait for the folder of the run, and draw it; None if no folder is given."""
-    from coilset.model.figures import pictures
+    from coilset.model.tools.figures import pictures
 
     draw = pictures.PARTS[part]()
     folder = task.read()

@@ -3,12 +3,12 @@
 import signal
 from collections.abc import Callable
 
-from coilset.model.base.entry import check_entries
-from coilset.model.base.errors import InputError
-from coilset.model.base.yaml import load_yaml
-from coilset.model.case.phases import Phase
-from coilset.model.results.records.record import Step
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.entry import check_entries
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.yaml import load_yaml
+from coilset.model.core.case.phases import Phase
+from coilset.model.core.results.records.record import Step
 
 HELP = """\
 Enter            the next step

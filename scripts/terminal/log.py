@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from io import TextIOWrapper
 from pathlib import Path
 
-from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.results.files.folder import not_linked
+from coilset.model.core.base.errors import CoilsetError, InputError
+from coilset.model.core.results.files.folder import not_linked
 
 # Without one, Python would print warnings of ranks that keep no log.
 logging.getLogger("coilset").addHandler(logging.NullHandler())

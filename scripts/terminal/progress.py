@@ -14,17 +14,17 @@ from typing import TYPE_CHECKING, Any
 from rich.table import Table
 from rich.text import Text
 
-from coilset.model.case.phases import drives_at
-from coilset.model.contact.base import SEAT_DOFS
-from coilset.model.results.quantities import quantities
-from coilset.model.results.records.labels import lives_text, within
-from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
-from coilset.model.results.records.units import words_and_unit
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case.phases import drives_at
+from coilset.model.core.contact.base import SEAT_DOFS
+from coilset.model.core.results.quantities import quantities
+from coilset.model.core.results.records.labels import lives_text, within
+from coilset.model.core.results.records.record import ContactRecord, SeatReactions, Step
+from coilset.model.core.results.records.units import words_and_unit
 from coilset.scripts.terminal.console import Console, styled, table
 
 if TYPE_CHECKING:  # not where a rod is solved
-    from coilset.model.slice.analysis import SliceStep
+    from coilset.model.physics.slice.analysis import SliceStep
 
 PRESSED = f"{'step':>5}{'height/mm':>10}{'force/N':>12}"
 HEAD = f"{PRESSED}{'iter.':>6}"  # of `step_row`

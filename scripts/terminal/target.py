@@ -4,7 +4,7 @@ import os
 import re
 from pathlib import Path
 
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 
 OVERWRITE = ("--overwrite", "--force")
 """Names of the option that replaces existing results; the second is its earlier name."""

@@ -8,7 +8,7 @@ import pytest
 
 import coilset.api
 from coilset.api import Case, InputError, Result, SolveError, material, solve
-from coilset.model.results.files.labelled import labelled
+from coilset.model.core.results.files.labelled import labelled
 
 
 def once(function):

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.section_shapes import Curve
-from coilset.meshes.springs.measured import read_centre_line
-from coilset.model.base.columns import read_columns
-from coilset.model.base.errors import InputError
-from coilset.model.material.identification.experiments import read_test
-from coilset.model.material.identification.relaxation_tests import read_relaxation
-from coilset.model.material.law.hardening_curves import read_table
-from coilset.model.vibration.lift import read_lift
+from coilset.meshes.measured.measured import read_centre_line
+from coilset.meshes.sections.shapes import Curve
+from coilset.model.core.base.columns import read_columns
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material.law.hardening_curves import read_table
+from coilset.model.physics.vibration.lift import read_lift
+from coilset.model.tools.identification.experiments import read_test
+from coilset.model.tools.identification.relaxation_tests import read_relaxation
 
 
 def test_comments_a_byte_order_mark_and_line_endings_of_spreadsheets(tmp_path):

@@ -5,13 +5,13 @@ from typing import Annotated, Any
 
 import pytest
 
-from coilset.model.base.entry import check_entries
-from coilset.model.base.errors import InputError
-from coilset.model.base.package import Entry
-from coilset.model.base.strict_entries import Strict
+from coilset.model.core.base.entry import check_entries
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.package import Entry
+from coilset.model.core.base.strict_entries import Strict
 
 TAILS = "coilset.meshes.tails"
-LIMIT = "coilset.model.case.limits:Limits"
+LIMIT = "coilset.model.tools.standards.limit_entries:Limits"
 
 
 def group(form):

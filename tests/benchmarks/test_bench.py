@@ -9,8 +9,8 @@ from types import SimpleNamespace
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.run import build
+from coilset.model.compose import build
+from coilset.model.core.base.errors import CoilsetError, InputError
 from coilset.scripts.commands import bench as command
 from coilset.verification.benchmarks import everyday, measure, stopwatch
 from coilset.verification.benchmarks.stopwatch import Stopwatch

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.case import check
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.case import check
 from coilset.scripts.commands import bench as command
 from coilset.scripts.terminal import spring_costs
 from coilset.verification.benchmarks import springs

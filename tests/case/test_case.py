@@ -4,11 +4,11 @@ import importlib
 
 import pytest
 
-from coilset.model.base.entry import LONGEST, shown
-from coilset.model.base.errors import InputError
-from coilset.model.case import Case, UnloadedCase, check, read_case
-from coilset.model.case.settings import assign
-from coilset.model.equilibrium.settings import CONSTANTS
+from coilset.model.core.base.entry import LONGEST, shown
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import Case, UnloadedCase, check, read_case
+from coilset.model.core.case.settings import assign
+from coilset.model.core.equilibrium.settings import CONSTANTS
 
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
 TEXT = "spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}\nloading: [{to: block}]\n"
@@ -128,9 +128,9 @@ def test_what_is_a_constant_now_is_refused_with_its_place():
         found = problem(raw(solver={"control": {group: {entry: 0.5}}}))
         assert found == (
             f"solver.control.{name}: this is no longer an entry, but the constant {entry.upper()} "
-            f"of model/equilibrium/{file}"
+            f"of model/core/equilibrium/{file}"
         )
-        module = importlib.import_module("coilset.model.equilibrium." + file.removesuffix(".py").replace("/", "."))
+        module = importlib.import_module("coilset.model.core.equilibrium." + file.removesuffix(".py").replace("/", "."))
         assert getattr(module, entry.upper()) > 0.0
     found = problem(raw(solver={"control": {"newton": {"free_penetration": 0.1}}}))
     assert found.startswith("solver.control.newton.free_penetration: this is no longer an entry, but contact.penetrati")

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from coilset.model.base.yaml import load_yaml
-from coilset.model.case import read_case
-from coilset.model.material import library
+from coilset.model.core.base.yaml import load_yaml
+from coilset.model.core.case import read_case
+from coilset.model.core.material import library
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 FILES = sorted([*EXAMPLES.rglob("*.yaml"), *library.FOLDER.glob("*.yaml")])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from coilset.model.case.names import entry_name
+from coilset.model.core.case.names import entry_name
 
 TABLE = {"turns": [0, 2, 3.5, 6], "values": [7.0, 7.0, 13.0, 13.0], "interpolation": "linear"}
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.material.point.stage import evaluate
-from coilset.model.runtime import caches, kernels
+from coilset.model.core.runtime import caches, kernels
+from coilset.model.physics.time.stage import evaluate
 
 
 def version(monkeypatch, sources):
@@ -87,7 +87,7 @@ def test_environments_with_other_compilers_share_none(sources, monkeypatch):
 def test_the_toolchain_is_that_of_this_process():
     """Its versions are read without an import of numba, which `coilset --help` would wait for."""
     program = (
-        "import sys; from coilset.model.runtime.caches import toolchain; print(toolchain(), 'numba' in sys.modules)"
+        "import sys; from coilset.model.core.runtime.caches import toolchain;print(toolchain(), 'numba' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.split() == [caches.toolchain(), "False"]
@@ -121,7 +121,7 @@ def test_checkouts_share_kernels(sources, monkeypatch, tmp_path):
 
 def test_kernels_of_this_checkout_are_kept_by_content():
     folder = Path(evaluate._cache._cache_path)
-    assert folder.name == kernels.digest(kernels.ROOT / "model/material/point/stage.py")
+    assert folder.name == kernels.digest(kernels.ROOT / "model/physics/time/stage.py")
 
 
 ADD = """
@@ -136,7 +136,7 @@ def add(x):
 """
 LOAD = """
 import sys
-from coilset.model.runtime.caches import load_without_compiler
+from coilset.model.core.runtime.caches import load_without_compiler
 load_without_compiler()
 import numpy as np
 from adding import add
@@ -152,7 +152,7 @@ def twice(x):
 """
 CALL = """
 import sys
-from coilset.model.runtime.caches import load_without_compiler
+from coilset.model.core.runtime.caches import load_without_compiler
 load_without_compiler()
 import numpy as np
 from doubling import add, twice
@@ -184,7 +184,7 @@ def test_what_is_loaded_becomes_part_of_callers_that_are_compiled_later(tmp_path
 def test_what_cannot_be_read_is_compiled_again(tmp_path, suffix, damage):
     """And kept: the next process loads it."""
     run = with_functions_kept_in(tmp_path, str(tmp_path / "cache"))
-    program = "import coilset.model.runtime.kernels\n" + LOAD
+    program = "import coilset.model.core.runtime.kernels\n" + LOAD
     assert run(program)[:2] == ["6.0", "0"]
     assert run(program)[:2] == ["6.0", "1"]
     kept = list((tmp_path / "cache").rglob(f"*{suffix}"))

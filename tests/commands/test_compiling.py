@@ -12,8 +12,8 @@ import numba
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.runtime.processes import mpi_environment, mpirun
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.runtime.processes import mpi_environment, mpirun
 from coilset.scripts import compiling, precompile
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.compiling import NOTICE, NOTICE_OF_PART, announce_compiling, compile_first, compiled
@@ -119,9 +119,9 @@ USED = """
 import gc, sys
 from mpi4py import MPI
 from numba.core.dispatcher import Dispatcher
-from coilset.model.run.analysis import Analysis
-from coilset.model.case import read_case
-from coilset.model.design.surrogate import guess
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.tools.design.surrogate import guess
 from coilset.scripts.precompile import PRESSED, _run, short_case, warm
 
 def used():

@@ -12,10 +12,10 @@ import time
 import pytest
 from matplotlib.image import imread
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.figures import pictures
-from coilset.model.figures.display import ensure
-from coilset.model.runtime.processes import mpi_environment, mpirun
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.runtime.processes import mpi_environment, mpirun
+from coilset.model.tools.figures import pictures
+from coilset.model.tools.figures.display import ensure
 from coilset.scripts.startup import announce_begin
 from coilset.scripts.terminal import drawing
 from coilset.scripts.terminal.drawing import Drawings

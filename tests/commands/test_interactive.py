@@ -3,10 +3,10 @@
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.core.results.files.checkpoint import Checkpoint
 from coilset.scripts.terminal.interactive import HELP, Prompt, parse_phase
 
 SETTINGS = [

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from mpi4py import MPI
 
-from coilset.model.run.error_estimates import BALANCE
+from coilset.model.tools.further_runs.error_estimates import BALANCE
 from coilset.scripts.commands.solve import solve
 
 pytestmark = pytest.mark.mpi

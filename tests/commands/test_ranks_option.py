@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.runtime.processes import mpi_environment, mpirun, stay_on_this_machine
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.runtime.processes import mpi_environment, mpirun, stay_on_this_machine
 from coilset.scripts.ranks import RULER, MpirunMessages, check
 
 
@@ -57,7 +57,7 @@ def test_each_mpirun_has_a_folder_of_its_own(tmp_path):
     """By itself it takes one named by its process number, and fails if a killed one has left that."""
     (tmp_path / "where.py").write_text(
         "import os\n"
-        "from coilset.model.runtime.processes import first_rank\n"
+        "from coilset.model.core.runtime.processes import first_rank\n"
         "if first_rank(): print(os.environ.get('PMIX_SERVER_TMPDIR', ''))\n"
     )
     (tmp_path / "own").mkdir()
@@ -85,7 +85,7 @@ def test_ranks_print_colours_on_a_terminal_only(tmp_path):
 
 
 LISTENING = """
-from coilset.model.runtime.processes import stay_on_this_machine
+from coilset.model.core.runtime.processes import stay_on_this_machine
 stay_on_this_machine()
 from mpi4py import MPI
 import os

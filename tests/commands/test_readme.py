@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.case import read_case
-from coilset.model.sweep.rehearsal import build_input
+from coilset.model.core.case import read_case
+from coilset.model.tools.sweep.rehearsal import build_input
 from coilset.scripts.commands import test as suite
 
 REPOSITORY = Path(__file__).resolve().parents[2]

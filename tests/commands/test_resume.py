@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.case.heat import HeatSpec
-from coilset.model.results.files import state_file
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.core.results.files import state_file
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.physics.time.heat_entries import HeatSpec
 
 SETTINGS = ["mesh.section.rule=abramowitz9", "accuracy=none", "loading.0.steps=20", "loading.1.steps=20"]
 CLAMPED = [

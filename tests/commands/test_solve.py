@@ -10,8 +10,8 @@ import sys
 import pytest
 import yaml
 
-from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.case import read_case
+from coilset.model.core.base.errors import CoilsetError, InputError
+from coilset.model.core.case import read_case
 
 SHORT = ["--set", "loading=[{to: {travel: 6}, steps: 3}, {to: {force: 0}, steps: 2}]", "--no-pictures"]
 
@@ -138,7 +138,7 @@ def test_wrong_settings_get_one_line(example, setting, words):
 def read_and_build(example, setting):
     from mpi4py import MPI
 
-    from coilset.model.run.analysis import Analysis
+    from coilset.model.compose.analysis import Analysis
 
     return Analysis(read_case(example, [setting]), MPI.COMM_SELF)
 

@@ -7,11 +7,11 @@ import pytest
 from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
-from coilset.model.base.columns import as_text
-from coilset.model.base.style import as_written
-from coilset.model.figures.png import save
-from coilset.model.material.library import FOLDER
-from coilset.model.results.files.folder import write_table
+from coilset.model.core.base.columns import as_text
+from coilset.model.core.base.style import as_written
+from coilset.model.core.material.library import FOLDER
+from coilset.model.core.results.files.folder import write_table
+from coilset.model.tools.figures.png import save
 from coilset.scripts.main import app
 from coilset.scripts.terminal.console import Console, styled, table
 

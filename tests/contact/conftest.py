@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.contact.base import TrialPositions
-from coilset.model.contact.curve import CentreLine
+from coilset.model.core.contact.base import TrialPositions
+from coilset.model.core.contact.curve import CentreLine
 
 TURNS, RADIUS = np.linspace(0.0, 2.5, 41), 20.0
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import check
-from coilset.model.contact.coils import Coils
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import check
+from coilset.model.core.contact.coils import Coils
+from coilset.model.core.results.files.checkpoint import Checkpoint
 
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
 TO_BLOCK_AND_BACK = [{"to": "block", "steps": 12}, {"to": {"force": 0.0}, "steps": 3}]

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from coilset.model.contact.base import TrialPositions
-from coilset.model.contact.coils import Coils
-from coilset.model.contact.friction import CoilFriction, SeatFriction
-from coilset.model.contact.hold import Groove, Mount
-from coilset.model.contact.seat import Seat
-from coilset.model.contact.thesis_gaps import Gaps
+from coilset.model.core.contact.base import TrialPositions
+from coilset.model.core.contact.coils import Coils
+from coilset.model.core.contact.seat import Seat
+from coilset.model.physics.friction.friction import CoilFriction, SeatFriction
+from coilset.model.physics.guides.hold import Groove, Mount
+from coilset.model.physics.guides.thesis_gaps import Gaps
 from coilset.verification.stops import Stops
 
 LEVEL = np.where(np.arange(12) == 8, 27.5, 0.0)

@@ -2,9 +2,9 @@
 
 from mpi4py import MPI
 
-from coilset.model.case import check
-from coilset.model.run import load_history
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose import load_history
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import check
 
 WIRE, TURNS, SLOPE = 2.0, 5.0, 1.1  # mm; turns; wires by which the radius changes a turn
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.case import check
-from coilset.model.run.contact_fineness import coarse_mesh_warnings, distance
+from coilset.model.core.case import check
+from coilset.model.physics.accuracy.contact_fineness import coarse_mesh_warnings, distance
 
 WIRE, DIAMETER, PITCH = 5.0, 40.0, 5.5
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from coilset.model.contact.base import TrialPositions
-from coilset.model.contact.coils import Coils
-from coilset.model.contact.curve import curve_weights
+from coilset.model.core.contact.base import TrialPositions
+from coilset.model.core.contact.coils import Coils
+from coilset.model.core.contact.curve import curve_weights
 
 SEATS = np.zeros(12)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.model.contact.curve import CentreLine
+from coilset.model.core.contact.curve import CentreLine
 
 
 def points_on(turns):

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.boundary import Boundary
-from coilset.meshes.section_shapes import Oval, rectangle
-from coilset.model.contact.base import TrialPositions
-from coilset.model.contact.faces import FacedCoils, FacedSeat, arms_table, flat, seat_arms
+from coilset.meshes.sections.boundary import Boundary
+from coilset.meshes.sections.shapes import Oval, rectangle
+from coilset.model.core.contact.base import TrialPositions
+from coilset.model.physics.outlines.faces import FacedCoils, FacedSeat, arms_table, flat, seat_arms
 
 WIDTH, HEIGHT, CORNER, BEDDING, ONSET = 8.0, 5.0, 0.5, 1e3, 1e-9
 FACE = WIDTH - 2.0 * CORNER  # width of its flats, mm

@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.contact.base import SEAT_DOFS, TrialPositions
-from coilset.model.contact.coils import Coils
-from coilset.model.contact.curve import CentreLine
-from coilset.model.contact.friction import PREDICTED, CoilFriction, SeatFriction, along_cone, on_cone
-from coilset.model.contact.seat import Seat
-from coilset.model.material import library
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.rules import polar
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.core.contact.base import SEAT_DOFS, TrialPositions
+from coilset.model.core.contact.coils import Coils
+from coilset.model.core.contact.curve import CentreLine
+from coilset.model.core.contact.seat import Seat
+from coilset.model.core.material import library
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.friction.friction import PREDICTED, CoilFriction, SeatFriction, along_cone, on_cone
 from coilset.verification.frame import Frame
 from coilset.verification.wire_points import wire_points
 

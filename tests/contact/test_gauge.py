@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.boundary import Boundary
-from coilset.meshes.section_shapes import Egg, Oval, rectangle
-from coilset.model.contact.faces import gauge_table
-from coilset.model.contact.gauge import extremes, gauge
+from coilset.meshes.sections.boundary import Boundary
+from coilset.meshes.sections.shapes import Egg, Oval, rectangle
+from coilset.model.core.contact.gauge import extremes, gauge
+from coilset.model.physics.outlines.faces import gauge_table
 
 HEIGHT = 5.0
 OUT = 0.6, 0.8

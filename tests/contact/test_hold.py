@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from coilset.model.contact.base import TrialPositions
-from coilset.model.contact.hold import Groove, Mount
-from coilset.model.contact.plate import Plate
+from coilset.model.core.contact.base import TrialPositions
+from coilset.model.core.contact.plate import Plate
+from coilset.model.physics.guides.hold import Groove, Mount
 
 SEATS = np.array([0.03, -0.02, 0.1, 1e-2, 2e-2, 5e-2, -0.04, 0.01, 27.5, -1e-2, 3e-2, -2e-2])
 LEVEL = np.where(np.arange(12) == 8, 27.5, 0.0)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model import equilibrium
+from coilset.model.core import equilibrium
 from coilset.verification.cases.contact.contact_meshes import FAILED, IN_PARTS, SOLVED, press
 from coilset.verification.spring_references.coil_by_coil import CoilByCoil
 

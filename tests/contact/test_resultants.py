@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import check, read_case
-from coilset.model.contact.resultants import Wrench
-from coilset.model.results.files.folder import write_seats
-from coilset.model.results.records.record import SeatReactions
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.dataset import pressure_along_wire
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.dataset import pressure_along_wire
+from coilset.model.core.case import check, read_case
+from coilset.model.core.results.files.folder import write_seats
+from coilset.model.core.results.records.record import SeatReactions
+from coilset.model.physics.reactions.resultants import Wrench
 
 COARSE = [
     "mesh.section.rule=abramowitz9",

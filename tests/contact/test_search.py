@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from coilset.model.contact.base import TrialPositions
-from coilset.model.contact.coils import Coils
-from coilset.model.contact.curve import CentreLine
+from coilset.model.core.contact.base import TrialPositions
+from coilset.model.core.contact.coils import Coils
+from coilset.model.core.contact.curve import CentreLine
 
 RADIUS, WIRE, PITCH = 20.0, 2.5, 4.9
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.contact.base import TrialPositions
-from coilset.model.contact.seat import Seat
+from coilset.model.core.contact.base import TrialPositions
+from coilset.model.core.contact.seat import Seat
 
 BEDDING, ONSET = 1e3, 0.005
 LEVEL = np.array([0.0, 0, 0, 0, 0, 0, 0, 0, 6.05, 0, 0, 0])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.contact.build import FREE_TILT_OF_BEDDING, MODULUS_OF_BEDDING
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.contacts import FREE_TILT_OF_BEDDING, MODULUS_OF_BEDDING
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
 
 SPRING = {
     "wire_diameter": 4.0,

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.contact.base import TrialPositions, one_sided
-from coilset.model.contact.elements import one_sided_at
-from coilset.model.contact.thesis_gaps import Gaps, gaps_one_turn_apart
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.contact.base import TrialPositions, one_sided
+from coilset.model.core.contact.elements import one_sided_at
+from coilset.model.physics.guides.thesis_gaps import Gaps, gaps_one_turn_apart
 from coilset.verification.stops import Stops
 
 SEATS = np.zeros(12)

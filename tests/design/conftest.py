@@ -3,8 +3,8 @@
 import pytest
 import yaml
 
-from coilset.model.design.design import make_search
-from coilset.model.design.file import read_design_file
+from coilset.model.tools.design.design import make_search
+from coilset.model.tools.design.file import read_design_file
 
 COARSE = {
     "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},

@@ -9,9 +9,9 @@ import pytest
 import yaml
 
 import coilset.open
-from coilset.model.base.errors import InputError
-from coilset.model.report.design_page import LEAST_OFF, write_design_report
-from coilset.model.sweep.journal import read_records
+from coilset.model.core.base.errors import InputError
+from coilset.model.tools.report.design_page import LEAST_OFF, write_design_report
+from coilset.model.tools.sweep.journal import read_records
 from coilset.scripts.commands.design import design
 from coilset.scripts.commands.report import report
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.base.errors import InputError
-from coilset.model.design.conditions import conditions
-from coilset.model.design.design import make_search
-from coilset.model.design.file import read_design_file
+from coilset.model.core.base.errors import InputError
+from coilset.model.tools.design.conditions import conditions
+from coilset.model.tools.design.design import make_search
+from coilset.model.tools.design.file import read_design_file
 
 FIND, SUCH = {"spring.pitch": [9, 15]}, {"free_length_after_mm": 25.0}
 

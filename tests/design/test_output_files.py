@@ -4,9 +4,9 @@ import shutil
 
 import yaml
 
-from coilset.model.case import read_case
-from coilset.model.design.output import with_files
-from coilset.model.material import library
+from coilset.model.core.case import read_case
+from coilset.model.core.material import library
+from coilset.model.tools.design.output import with_files
 
 
 def test_a_found_case_is_complete_in_its_folder(tmp_path):

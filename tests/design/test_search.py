@@ -5,13 +5,13 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.design.design import find, make_search
-from coilset.model.design.file import read_design_file
-from coilset.model.design.output import found_data
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.tools.design.design import find, make_search
+from coilset.model.tools.design.file import read_design_file
+from coilset.model.tools.design.output import found_data
 
 CLOSE = 1e-6  # of the target
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 4.5, "pitch": 12.0}

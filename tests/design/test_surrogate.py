@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from coilset.model.case import check
-from coilset.model.design.conditions import Condition
-from coilset.model.design.surrogate import guess
-from coilset.model.uniform_coil.equivalent import coil
+from coilset.model.core.case import check
+from coilset.model.physics.uniform_coil.equivalent import coil
+from coilset.model.tools.design.conditions import Condition
+from coilset.model.tools.design.surrogate import guess
 
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 8.0}
 

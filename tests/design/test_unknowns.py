@@ -7,13 +7,13 @@ import pytest
 import yaml
 
 import coilset.open
-from coilset.model.base.errors import InputError
-from coilset.model.design.choices import choose
-from coilset.model.design.design import make_search, solve
-from coilset.model.design.evaluation import Evaluator
-from coilset.model.design.file import read_design_file
-from coilset.model.design.output import found_data
-from coilset.model.report.design_page import write_design_report
+from coilset.model.core.base.errors import InputError
+from coilset.model.tools.design.choices import choose
+from coilset.model.tools.design.design import make_search, solve
+from coilset.model.tools.design.evaluation import Evaluator
+from coilset.model.tools.design.file import read_design_file
+from coilset.model.tools.design.output import found_data
+from coilset.model.tools.report.design_page import write_design_report
 from coilset.scripts.commands.design import design
 
 TABLE = {"turns": [0, 1.25, 2.5], "values": [11.0, 13.0, 11.0], "interpolation": "linear"}

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from coilset import meshes, model
-from coilset.model.base.strict_entries import Strict
-from coilset.model.case import reference
-from coilset.model.equilibrium.settings import NewtonControl, StepControl
+from coilset.model.core.base.strict_entries import Strict
+from coilset.model.core.case import reference
+from coilset.model.core.equilibrium.settings import NewtonControl, StepControl
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
@@ -67,7 +67,7 @@ def test_every_model_of_a_file_is_on_a_page():
         pending += inherited
         known |= {kind for kind in inherited if not kind.__subclasses__()}
     known = {kind for kind in known if kind.__module__.startswith(("coilset.model", "coilset.meshes"))}  # none of tests
-    inputs = {kind for kind in known if not kind.__module__.startswith("coilset.model.standards.wires")}
+    inputs = {kind for kind in known if not kind.__module__.startswith("coilset.model.tools.wires")}
     shown = {group.model for root in MODELS.values() for group in reference.groups(root)}
     assert len(inputs) > 40
     assert {kind.__qualname__ for kind in inputs if not shown & {*kind.__mro__}} == set()

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from coilset import model
-from coilset.model.case import read_case
-from coilset.model.results.files.netcdf import coordinates
-from coilset.model.results.records.record import BucklingMode, SeatReaction, SeatReactions, Step
-from coilset.model.results.records.summary_entries import Summary
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.dataset import variables
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.dataset import variables
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import read_case
+from coilset.model.core.results.files.netcdf import coordinates
+from coilset.model.core.results.records.record import BucklingMode, SeatReaction, SeatReactions, Step
+from coilset.model.core.results.records.summary_entries import Summary
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs/reference/results.md").read_text(encoding="utf-8")
 MODEL = Path(model.__file__).parent

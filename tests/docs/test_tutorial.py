@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.case import check, read_case
-from coilset.model.material import library, programs
-from coilset.model.results.quantities import ALONG, ENTRIES
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
-from coilset.model.sweep.plan import Plan
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import check, read_case
+from coilset.model.core.material import library
+from coilset.model.core.results.quantities import ALONG, ENTRIES
+from coilset.model.tools.identification import programs
+from coilset.model.tools.sweep.plan import Plan
 
 PAGES = {
     path.stem: path.read_text(encoding="utf-8")

@@ -4,8 +4,8 @@ import time
 
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.base.yaml import load_yaml, read_data
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.yaml import load_yaml, read_data
 
 
 @pytest.mark.parametrize(

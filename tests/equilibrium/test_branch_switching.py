@@ -6,17 +6,17 @@ from mpi4py import MPI
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from coilset.model.case import read_case
-from coilset.model.equilibrium.path import branch_switching
-from coilset.model.equilibrium.path.branch_switching import Snap
-from coilset.model.equilibrium.path.stability import Stability
-from coilset.model.equilibrium.path.step_sizes import Position
-from coilset.model.equilibrium.settings import StepControl
-from coilset.model.equilibrium.system.load import Drag, Load
-from coilset.model.material import library
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.section.rules import abramowitz9
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.case import read_case
+from coilset.model.core.equilibrium.path.step_sizes import Position
+from coilset.model.core.equilibrium.settings import StepControl
+from coilset.model.core.equilibrium.system.load import Drag, Load
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import abramowitz9
+from coilset.model.physics.stability import branch_switching
+from coilset.model.physics.stability.branch_switching import Snap
+from coilset.model.physics.stability.stability import Stability
 from coilset.verification.frame import Frame
 
 HALF_SPAN, RISE, RADIUS = 100.0, 5.0, 0.3  # mm, of Mises's truss

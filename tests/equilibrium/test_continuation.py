@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.case import read_case
-from coilset.model.equilibrium.newton.newton import Start
-from coilset.model.equilibrium.newton.outcome import Estimate, Outcome
-from coilset.model.equilibrium.path.step_sizes import Path, StepSizes
-from coilset.model.equilibrium.settings import StepControl
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.case import read_case
+from coilset.model.core.equilibrium.newton.newton import Start
+from coilset.model.core.equilibrium.newton.outcome import Estimate, Outcome
+from coilset.model.core.equilibrium.path.step_sizes import Path, StepSizes
+from coilset.model.core.equilibrium.settings import StepControl
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]
 
@@ -186,7 +186,7 @@ def test_a_spring_that_is_solid_ends_there(make, monkeypatch):
     wire = 7.06
     shape = "{shape: double cone, ends: 42.41, middle: 61.42}"
     spring = f"spring={{wire_diameter: {wire}, mean_diameter: {shape}, turns: 2, pitch: 21.63}}"
-    monkeypatch.setattr("coilset.model.run.load_history.check_targets", lambda *_: None)
+    monkeypatch.setattr("coilset.model.compose.load_history.check_targets", lambda *_: None)
     loading = f"[{{to: block}}, {{to: {{height: {2.0 * wire - 1.0}}}}}]"
     analysis = make(loading, spring, "mesh.elements_per_turn=16", "contact.bedding=5250")
     assert analysis.spring.block_height == pytest.approx(2.0 * wire, rel=1e-9)

@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from coilset.model.equilibrium.newton.convergence import EquilibriumTest, Imbalance, Reason, reason_in_words
-from coilset.model.equilibrium.newton.iteration import CRAWL, CRAWLS, Iteration
-from coilset.model.equilibrium.newton.methods import METHODS
-from coilset.model.equilibrium.settings import NewtonControl
+from coilset.model.core.equilibrium.newton.convergence import EquilibriumTest, Imbalance, Reason, reason_in_words
+from coilset.model.core.equilibrium.newton.iteration import CRAWL, CRAWLS, Iteration
+from coilset.model.core.equilibrium.newton.methods import METHODS
+from coilset.model.core.equilibrium.settings import NewtonControl
 
 DIVERGENCE = 1e4
 

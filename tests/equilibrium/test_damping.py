@@ -8,10 +8,10 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from coilset.model.case import read_case
-from coilset.model.equilibrium.newton.damping import NOTHING, RELAX, SHORT, Damping
-from coilset.model.equilibrium.path.stability import _rayleigh_ritz
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.core.equilibrium.newton.damping import NOTHING, RELAX, SHORT, Damping
+from coilset.model.physics.stability.stability import _rayleigh_ritz
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "ck15_presetting.yaml"
 WEAK, STIFF = 0.5, 4e4  # N/mm

@@ -7,12 +7,12 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import check, read_case
-from coilset.model.figures.panels import force_line
-from coilset.model.results.records.provenance import origin
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.run_files import run_of
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_files import run_of
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check, read_case
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.tools.figures.panels import force_line
 
 WIRE, MEAN, TURNS, PITCH = 5.0, 40.0, 12.0, 9.0
 LENGTH = TURNS * PITCH

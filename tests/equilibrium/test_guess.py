@@ -7,11 +7,11 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from coilset.model.body.state import State, Where
-from coilset.model.equilibrium.path import guess as path_guess
-from coilset.model.equilibrium.path.guess import Guess
-from coilset.model.equilibrium.path.step_sizes import Position
-from coilset.model.equilibrium.system.load import Load
+from coilset.model.core.body.state import State, Where
+from coilset.model.core.equilibrium.path import guess as path_guess
+from coilset.model.core.equilibrium.path.guess import Guess
+from coilset.model.core.equilibrium.path.step_sizes import Position
+from coilset.model.core.equilibrium.system.load import Load
 
 LOAD = SimpleNamespace(held=np.array([], dtype=int), layout=SimpleNamespace(comm=MPI.COMM_SELF))
 pytestmark = pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="needs no ranks")

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import Case
-from coilset.model.case.case import check
-from coilset.model.rotations.vectors import rotation_matrix
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import Case
+from coilset.model.core.case.case import check
+from coilset.model.core.rotations.vectors import rotation_matrix
 
 WIRE, MEAN, TURNS, PITCH = 5.0, 40.0, 2.5, 12.0
 TOP = slice(6, 12)

@@ -2,9 +2,9 @@
 
 import pytest
 
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.slice.analysis import SliceAnalysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.physics.slice.analysis import SliceAnalysis
 
 SHORT = ["loading=[{to: {travel: 1}, steps: 1}]", "ends=clamped", "mesh.elements_per_turn=8"]
 

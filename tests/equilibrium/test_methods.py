@@ -10,16 +10,16 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.optimize import brentq
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.equilibrium.newton.methods import METHODS, rod_method
-from coilset.model.equilibrium.newton.newton import Newton
-from coilset.model.equilibrium.newton.snes import SnesFactory
-from coilset.model.equilibrium.settings import MethodName
-from coilset.model.equilibrium.system import factors, matrix
-from coilset.model.material import library
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.rules import abramowitz9
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.core.equilibrium.newton.methods import METHODS, rod_method
+from coilset.model.core.equilibrium.newton.newton import Newton
+from coilset.model.core.equilibrium.newton.snes import SnesFactory
+from coilset.model.core.equilibrium.settings import MethodName
+from coilset.model.core.equilibrium.system import factors, matrix
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import abramowitz9
 from coilset.verification.frame import Frame
 
 PROGRAM = "loading=[{to: {travel: 12}, steps: 10}, {to: {force: 0}, steps: 4}]"
@@ -71,9 +71,9 @@ def test_contacts_are_eliminated_in_another_order(example, method, monkeypatch):
 
 ALL_METHODS = f"""
 from mpi4py import MPI
-from coilset.model.run.analysis import Analysis
-from coilset.model.case import read_case
-from coilset.model.equilibrium.newton.methods import METHODS
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.core.equilibrium.newton.methods import METHODS
 
 kept = []  # until PETSc ends: what is gone has taken its options along
 for method in METHODS:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.equilibrium.path.next_touch import CROSSING
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.physics.accuracy.next_touch import CROSSING
 
 COARSE = ["mesh.elements_per_turn=12", "mesh.section.radial=3", "mesh.section.angular=8"]
 

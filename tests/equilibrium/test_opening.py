@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.entry import check_entries
-from coilset.model.case import Case
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.entry import check_entries
+from coilset.model.core.case import Case
 
 TELESCOPING = {  # its coils slip past each other, and its force falls from there to block
     "spring": {

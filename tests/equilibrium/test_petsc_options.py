@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.equilibrium.petsc_options import OPTIONS, bare, plain
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.core.equilibrium.petsc_options import OPTIONS, bare, plain
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "methods.md"
 SMALL = [

@@ -3,8 +3,8 @@
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
 
 CLAMPED = ["ends=clamped", "mesh={elements_per_turn: 10, section: {rule: abramowitz9}}"]
 

@@ -9,17 +9,17 @@ import pytest
 from mpi4py import MPI
 from scipy.linalg import eigh, eigvalsh_tridiagonal, ldl
 
-from coilset.model.case import Case
-from coilset.model.equilibrium.path.branch_switching import Snap
-from coilset.model.equilibrium.path.continuation import Continuation
-from coilset.model.equilibrium.path.stability import mode_in_words, negative_pivots
-from coilset.model.equilibrium.settings import StepControl
-from coilset.model.equilibrium.system.load import Drag
-from coilset.model.equilibrium.system.system import Evaluation
-from coilset.model.results.records.buckling import axis_offset, buckling, leaning
-from coilset.model.results.records.record import Step
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import Case
+from coilset.model.core.equilibrium.path.continuation import Continuation
+from coilset.model.core.equilibrium.settings import StepControl
+from coilset.model.core.equilibrium.system.load import Drag
+from coilset.model.core.equilibrium.system.system import Evaluation
+from coilset.model.core.results.records.record import Step
+from coilset.model.physics.stability.branch_switching import Snap
+from coilset.model.physics.stability.buckling import axis_offset, buckling, leaning
+from coilset.model.physics.stability.stability import mode_in_words, negative_pivots
 from coilset.scripts.terminal.progress import Lines
 
 LONG = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 40, "pitch": 12.0}
@@ -165,7 +165,7 @@ def test_critical_travel_is_haringxs(capsys):
 
 
 def test_a_short_spring_does_not_buckle(example):
-    from coilset.model.case import read_case
+    from coilset.model.core.case import read_case
 
     settings = ["mesh.section.rule=abramowitz9", "loading.0.steps=6", "loading.1.steps=3", "accuracy=none"]
     analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check, read_case
-from coilset.model.case.case import read_case_data
-from coilset.model.equilibrium.newton.outcome import Estimate
-from coilset.model.equilibrium.path.step_error import LEAST_FACTOR
-from coilset.model.material import library
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check, read_case
+from coilset.model.core.case.case import read_case_data
+from coilset.model.core.equilibrium.newton.outcome import Estimate
+from coilset.model.core.material import library
+from coilset.model.physics.accuracy.step_error import LEAST_FACTOR
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.radial=3", "mesh.section.angular=8"]
 BACK = "{to: {force: 0}, steps: 8}"

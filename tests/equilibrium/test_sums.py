@@ -3,8 +3,8 @@
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.system.coo import SumOfMatrices
-from coilset.model.equilibrium.system.sums import add_matrices, add_vectors
+from coilset.model.core.equilibrium.system.coo import SumOfMatrices
+from coilset.model.core.equilibrium.system.sums import add_matrices, add_vectors
 
 SIZE, RANGE = 40, slice(9, 33)  # unknowns, and those whose rows are here
 NUMBERS = np.arange(SIZE, dtype=np.int32)  # the small matrices call them by their numbers

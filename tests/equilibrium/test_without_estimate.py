@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check, read_case
-from coilset.model.case.case import read_case_data
-from coilset.model.report.answer import answer
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
-from coilset.model.sweep.rehearsal import build_input
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check, read_case
+from coilset.model.core.case.case import read_case_data
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.tools.report.answer import answer
+from coilset.model.tools.sweep.rehearsal import build_input
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.interactive import Prompt
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.design.design import make_search, solve
-from coilset.model.design.file import read_design_file
+from coilset.model.tools.design.design import make_search, solve
+from coilset.model.tools.design.file import read_design_file
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 MOST = {"length_and_force": 6, "tied": 8, "choices": 14}  # evaluations; 4, 5 and 11 at the time of writing

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import check
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
-from coilset.model.sweep.plan import Plan
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import check
+from coilset.model.tools.sweep.plan import Plan
 
 SWEEPS = Path(__file__).resolve().parents[2] / "examples" / "sweeps"
 CASES = {

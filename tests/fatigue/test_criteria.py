@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from coilset.model.fatigue import criteria
-from coilset.model.fatigue.cycle import Cycle, tensors
-from coilset.model.fatigue.strength import Strength, dang_van_a, findley_k
+from coilset.model.physics.fatigue import criteria
+from coilset.model.physics.fatigue.cycle import Cycle, tensors
+from coilset.model.physics.fatigue.strength import Strength, dang_van_a, findley_k
 from coilset.verification.references import fatigue_planes as brute
 
 NU, K, A, YIELD = 0.3, 0.25, 0.4, 1500.0

@@ -21,22 +21,23 @@ import h5py
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.springs.measured import read_centre_line
-from coilset.model.base.errors import CoilsetError
-from coilset.model.case import check, read_case
-from coilset.model.design.file import read_design_file
-from coilset.model.material import library, programs
-from coilset.model.material.identification.experiments import read_test
-from coilset.model.nest.file import read_nest
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.files.labelled import labelled
-from coilset.model.results.files.opened import open_run
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards.from_results import read as read_results
-from coilset.model.sweep.journal import read_records
-from coilset.model.sweep.plan import Plan
-from coilset.model.vibration.lift import read_lift
-from coilset.model.vibration.loaded import after_results
+from coilset.meshes.measured.measured import read_centre_line
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.case import check, read_case
+from coilset.model.core.material import library
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.results.files.labelled import labelled
+from coilset.model.core.results.files.opened import open_run
+from coilset.model.physics.vibration.lift import read_lift
+from coilset.model.tools.design.file import read_design_file
+from coilset.model.tools.identification import programs
+from coilset.model.tools.identification.experiments import read_test
+from coilset.model.tools.nest.file import read_nest
+from coilset.model.tools.sheet.from_results import read as read_results
+from coilset.model.tools.studies.loaded_spring import after_results
+from coilset.model.tools.sweep.journal import read_records
+from coilset.model.tools.sweep.plan import Plan
 from coilset.scripts.commands.report import report
 from coilset.scripts.commands.solve import solve
 from coilset.verification.comparison import compare

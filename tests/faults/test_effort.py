@@ -2,11 +2,11 @@
 
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.run import build as room
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.effort import Effort, machine_memory
+from coilset.model.compose import build as room
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.physics.accuracy.effort import Effort, machine_memory
 
 
 def test_the_estimate_is_that_of_the_measured_table():

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import CoilsetError, InputError, SolveError
-from coilset.model.case import read_case
-from coilset.model.material import library
-from coilset.model.results.files import folder as folders
-from coilset.model.results.files import state_file
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.files.opened import open_run
-from coilset.model.results.records import provenance
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import CoilsetError, InputError, SolveError
+from coilset.model.core.case import read_case
+from coilset.model.core.material import library
+from coilset.model.core.results.files import folder as folders
+from coilset.model.core.results.files import state_file
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.results.files.opened import open_run
+from coilset.model.core.results.records import provenance
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.log import run_log
 

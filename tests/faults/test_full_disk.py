@@ -17,22 +17,21 @@ import pyvista
 import xarray as xr
 from mpi4py import MPI
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.case import read_case
-from coilset.model.figures import png, scene
-from coilset.model.figures.display import ensure
-from coilset.model.figures.panels.characteristic import characteristic
-from coilset.model.results.files import folder
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.files.grid_file import write_grid
-from coilset.model.results.records.provenance import origin
-from coilset.model.run import examples
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary import dataset, run_files
-from coilset.model.summary.run_files import run_of
-from coilset.model.summary.summary import summarise
-from coilset.model.sweep import dataset as sweep_data
-from coilset.model.sweep.journal import Journal, read_records
+from coilset.model.compose import dataset, examples, run_files
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_files import run_of
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.case import read_case
+from coilset.model.core.results.files import folder
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.results.files.grid_file import write_grid
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.tools.figures import png, scene
+from coilset.model.tools.figures.display import ensure
+from coilset.model.tools.figures.panels.characteristic import characteristic
+from coilset.model.tools.sweep import dataset as sweep_data
+from coilset.model.tools.sweep.journal import Journal, read_records
 from coilset.scripts.main import app
 from coilset.verification.study import Study
 

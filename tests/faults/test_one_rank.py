@@ -5,12 +5,12 @@ import sys
 
 import pytest
 
-from coilset.model.runtime.processes import mpi_environment, mpirun
+from coilset.model.core.runtime.processes import mpi_environment, mpirun
 
 PROGRAM = """
 import sys
 from mpi4py import MPI
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 from coilset.scripts import main, running
 
 running.TOGETHER = 1.0

@@ -22,7 +22,7 @@ SMALL = [
 ]
 RUN = """
 import json, sys
-from coilset.model.base.errors import CoilsetError
+from coilset.model.core.base.errors import CoilsetError
 from coilset.scripts.main import app
 
 for words in json.load(sys.stdin):

@@ -8,9 +8,9 @@ import time
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.equilibrium.system.system import System
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.equilibrium.system.system import System
 from coilset.scripts.commands.solve import solve
 
 SMALL = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "accuracy=none"]

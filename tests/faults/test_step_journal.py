@@ -5,9 +5,9 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from coilset.model.results.files.step_journal import StepJournal
-from coilset.model.results.records.frame import Frame
-from coilset.model.results.records.record import WHOLE, SeatReaction, SeatReactions, Step
+from coilset.model.core.results.files.step_journal import StepJournal
+from coilset.model.core.results.records.frame import Frame
+from coilset.model.core.results.records.record import WHOLE, SeatReaction, SeatReactions, Step
 
 NONE = SeatReaction(*[float("nan")] * len(fields(SeatReaction)))
 

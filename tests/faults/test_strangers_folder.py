@@ -8,10 +8,10 @@ import time
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.results.files import folder as folders
-from coilset.model.results.files.folder import RESULTS, clear, subfolder, whole
-from coilset.model.sweep.journal import Journal
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.results.files import folder as folders
+from coilset.model.core.results.files.folder import RESULTS, clear, subfolder, whole
+from coilset.model.tools.sweep.journal import Journal
 from coilset.scripts.commands.fitting.files import files_to_write
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.log import run_log

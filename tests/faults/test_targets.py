@@ -3,12 +3,12 @@
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import check, read_case
-from coilset.model.case.loading import is_pressed
-from coilset.model.case.targets import check_targets, closing_force
-from coilset.model.slice.analysis import SliceAnalysis
-from coilset.model.standards.case_sheet import case_sheet
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check, read_case
+from coilset.model.core.case.loading import is_pressed
+from coilset.model.core.case.targets import check_targets, closing_force
+from coilset.model.physics.slice.analysis import SliceAnalysis
+from coilset.model.tools.standards.case_sheet import case_sheet
 from coilset.scripts.commands.solve import solve
 
 G = 84000.0

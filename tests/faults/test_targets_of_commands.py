@@ -2,7 +2,7 @@
 
 import pytest
 
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 from coilset.scripts.main import app
 from coilset.scripts.terminal.target import file_targets, folder_target, sheet_targets
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import yaml
 from hypothesis import strategies as st
 
-from coilset.model.material.library import FOLDER
+from coilset.model.core.material.library import FOLDER
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 KINDS = {

@@ -13,32 +13,33 @@ from fuzz_files import EXAMPLES
 from fuzz_schema import breaches
 from mpi4py import MPI
 
-from coilset.meshes.springs.measured import MeasuredSpec
-from coilset.model.base.columns import read_columns
-from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.base.yaml import load_yaml, read_data
-from coilset.model.case import Case, check
-from coilset.model.case import read_case as case_of
-from coilset.model.case.material import case_law
-from coilset.model.case.targets import check_targets
-from coilset.model.design.file import DesignFile, read_design_file
-from coilset.model.material import library, programs
-from coilset.model.material.identification.elastic_part import TESTER, check_elastic, corrected
-from coilset.model.material.identification.experiments import read_test
-from coilset.model.material.identification.relaxation_tests import read_relaxation
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.programs import Program
-from coilset.model.nest.file import NestFile, read_nest
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.files.labelled import labelled
-from coilset.model.run.build import build_wire
-from coilset.model.run.effort import Effort
-from coilset.model.spring_fit.pressing import read_pressing
-from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.sweep.journal import read_records
-from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.spec import SweepSpec
-from coilset.model.vibration.lift import read_lift
+from coilset.meshes.measured.measured import MeasuredSpec
+from coilset.model.compose.build import build_wire
+from coilset.model.core.base.columns import read_columns
+from coilset.model.core.base.errors import CoilsetError, InputError
+from coilset.model.core.base.yaml import load_yaml, read_data
+from coilset.model.core.case import Case, check
+from coilset.model.core.case import read_case as case_of
+from coilset.model.core.case.material import case_law
+from coilset.model.core.case.targets import check_targets
+from coilset.model.core.material import library
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.results.files.labelled import labelled
+from coilset.model.physics.accuracy.effort import Effort
+from coilset.model.physics.vibration.lift import read_lift
+from coilset.model.tools.design.file import DesignFile, read_design_file
+from coilset.model.tools.identification import programs
+from coilset.model.tools.identification.elastic_part import TESTER, check_elastic, corrected
+from coilset.model.tools.identification.experiments import read_test
+from coilset.model.tools.identification.programs import Program
+from coilset.model.tools.identification.relaxation_tests import read_relaxation
+from coilset.model.tools.nest.file import NestFile, read_nest
+from coilset.model.tools.spring_fit.pressing import read_pressing
+from coilset.model.tools.standards.case_warnings import case_warnings
+from coilset.model.tools.sweep.journal import read_records
+from coilset.model.tools.sweep.plan import Plan
+from coilset.model.tools.sweep.spec import SweepSpec
 from coilset.scripts.commands.report import report
 from coilset.scripts.commands.sheet import Options, sheet
 from coilset.verification.comparison import _checked

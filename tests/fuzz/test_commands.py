@@ -16,9 +16,9 @@ from fuzz_tables import RELAXATION
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.run import build
-from coilset.model.slice import analysis as slices
+from coilset.model.compose import build
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.physics.slice import analysis as slices
 from coilset.scripts import main, precompile, ranks, running
 from coilset.scripts.commands import design, material, mesh, nest, report, solid, solve, sweep, verify
 from coilset.scripts.commands import slice as slice_command
@@ -186,9 +186,9 @@ def place(tmp_path, monkeypatch):
         (material, "_write_csv"),
     ):
         monkeypatch.setattr(module, name, reach)
-    monkeypatch.setattr("coilset.model.material.identification.fit.fit", reach)
-    monkeypatch.setattr("coilset.model.spring_fit.fit.fit_springs", reach)
-    monkeypatch.setattr("coilset.model.material.programs.run", reach)
+    monkeypatch.setattr("coilset.model.tools.identification.fit.fit", reach)
+    monkeypatch.setattr("coilset.model.tools.spring_fit.fit.fit_springs", reach)
+    monkeypatch.setattr("coilset.model.tools.identification.programs.run", reach)
     monkeypatch.setattr("coilset.scripts.commands.test.test", reach)
     return tmp_path
 

@@ -14,7 +14,10 @@ ROOMS = ("model", "meshes", "scripts", "verification", "examples")
 DISTRIBUTIONS = {"PIL": "pillow", "yaml": "pyyaml", "vtkmodules": "vtk"}  # that have another name than their modules
 FENICS = {"dolfinx", "basix", "ffcx", "ufl"}  # of fenics-dolfinx; from a distribution or conda, as those that follow
 OF_A_DISTRIBUTION = {"petsc4py", "mpi4py", "gmsh"}
-WHERE_IT_IS = {"dolfinx_solver": "model/runtime/libraries.py", "paraview": "verification/solid_study/paraview_view.py"}
+WHERE_IT_IS = {
+    "dolfinx_solver": "model/core/runtime/libraries.py",
+    "paraview": "verification/solid_study/paraview_view.py",
+}
 
 
 def imported() -> Iterator[tuple[str, str]]:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.base.version import __version__, _first
+from coilset.model.core.base.version import __version__, _first
 
 LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
 
@@ -114,7 +114,7 @@ def test_version_names_what_the_numbers_rest_on():
 
 
 def test_a_package_without_metadata_has_its_version_in_code():
-    assert _first(("coilset.model.base.version",)) == __version__
+    assert _first(("coilset.model.core.base.version",)) == __version__
     assert _first(("no-package", "of-this-name")) == ""
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.base.version import __version__
+from coilset.model.core.base.version import __version__
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 ROOMS = ("model", "meshes", "verification", "scripts", "examples")

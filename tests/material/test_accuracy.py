@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from coilset.model.material import library
-from coilset.model.material.point import points
+from coilset.model.core.material import library
+from coilset.model.core.material.point import points
 from coilset.verification.references import heun
 
 INCREMENT = 1e-4

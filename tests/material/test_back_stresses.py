@@ -9,12 +9,14 @@ import yaml
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library, programs
-from coilset.model.material.law.functions import HEATING
-from coilset.model.material.law.parts import saturation
-from coilset.model.material.point import back_stresses, groups, points
-from coilset.model.material.point.loops import follow
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.core.material.law.functions import HEATING
+from coilset.model.core.material.law.parts import saturation
+from coilset.model.core.material.point import groups, points
+from coilset.model.core.material.point.loops import follow
+from coilset.model.physics.back_stresses import back_stresses
+from coilset.model.tools.identification import programs
 
 LAW = library.load("chaboche")
 TERMS = [(200000.0, 1000.0), (22500.0, 150.0), (2000.0, 20.0)]  # C and γ of the file

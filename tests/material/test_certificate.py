@@ -5,9 +5,10 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library, programs
-from coilset.model.standards.wires.certificate import Certificate
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.tools.identification import programs
+from coilset.model.tools.wires.certificate import Certificate
 from coilset.scripts.commands.material import app
 
 STATED = ["--rm", "1665", "--rp02", "1450", "--elastic-limit", "1300", "--name", "my_wire"]

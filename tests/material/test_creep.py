@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from coilset.model.material import library
-from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
-from coilset.model.material.creep.rod import without_yield
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
-from coilset.model.material.point import increment, points
-from coilset.model.material.point.loops import follow, with_loop
-from coilset.model.material.point.over_step import law_over_step
-from coilset.model.material.point.stage import ROOM
-from coilset.model.runtime.kernels import KERNEL, njit
+from coilset.model.core.material import library
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.material.point import points
+from coilset.model.core.material.point.loops import follow, with_loop
+from coilset.model.core.material.point.over_step import law_over_step
+from coilset.model.core.runtime.kernels import KERNEL, njit
+from coilset.model.physics.time import increment
+from coilset.model.physics.time.creep.law import GAS_CONSTANT, CreepLaw
+from coilset.model.physics.time.creep.rod import without_yield
+from coilset.model.physics.time.stage import ROOM
 
 COLD, WARM, ALPHA = 293.15, 473.15, 1.2e-5
 MODULI = {COLD: (80000.0, 0.29), WARM: (74000.0, 0.31)}

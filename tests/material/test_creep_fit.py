@@ -8,14 +8,14 @@ import yaml
 from scipy.special import hyp2f1
 from typer.testing import CliRunner
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library
-from coilset.model.material.creep.entries import Creep
-from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
-from coilset.model.material.identification import creep_fit
-from coilset.model.material.identification.relaxation_tests import Readings, read_relaxation
-from coilset.model.material.identification.relaxing import loss
-from coilset.model.material.point.loops import follow
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.core.material.point.loops import follow
+from coilset.model.physics.time.creep.entries import Creep
+from coilset.model.physics.time.creep.law import GAS_CONSTANT, CreepLaw
+from coilset.model.tools.identification import creep_fit
+from coilset.model.tools.identification.relaxation_tests import Readings, read_relaxation
+from coilset.model.tools.identification.relaxing import loss
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.time import creep_fit as studies
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from coilset.model.base.entry import check_entries
-from coilset.model.base.errors import InputError
-from coilset.model.material import programs
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
+from coilset.model.core.base.entry import check_entries
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.tools.identification import programs
 
 G, NU = 80000.0, 0.3
 E = 2 * G * (1 + NU)

@@ -5,11 +5,11 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library, programs
-from coilset.model.material.identification import cyclic
-from coilset.model.material.identification.experiments import Test
-from coilset.model.material.point import points
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.core.material.point import points
+from coilset.model.tools.identification import cyclic, programs
+from coilset.model.tools.identification.experiments import Test
 from coilset.scripts.commands.material import app
 
 G, NU = 80000.0, 0.3

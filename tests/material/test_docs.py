@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coilset.model.material import library, programs
+from coilset.model.core.material import library
+from coilset.model.tools.identification import programs
 from coilset.verification.references import heun
 
 TEXT = (Path(__file__).resolve().parents[2] / "docs" / "material.md").read_text(encoding="utf-8")

@@ -10,10 +10,10 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.model.base.errors import InputError
-from coilset.model.material.identification import cyclic, fit
-from coilset.model.material.identification.elastic_part import check_elastic, corrected, elastic_part
-from coilset.model.material.identification.experiments import Test
+from coilset.model.core.base.errors import InputError
+from coilset.model.tools.identification import cyclic, fit
+from coilset.model.tools.identification.elastic_part import check_elastic, corrected, elastic_part
+from coilset.model.tools.identification.experiments import Test
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.law import material_fit
 

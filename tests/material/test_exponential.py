@@ -5,7 +5,7 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from coilset.model.material.law.exponential import decay, exp
+from coilset.model.core.material.law.exponential import decay, exp
 
 ROUNDING = 2.0**-53
 RANGES = {

@@ -4,8 +4,9 @@ import re
 
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library, programs
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.tools.identification import programs
 
 CK15 = (library.FOLDER / "ck15.yaml").read_text(encoding="utf-8")
 PROGRAM = "name: pull\nsteps:\n  - {to: {eps11: 0.01}, increments: 3}\n"

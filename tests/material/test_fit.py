@@ -8,10 +8,10 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library
-from coilset.model.material.identification import experiments, figures, fit
-from coilset.model.material.point import points
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.core.material.point import points
+from coilset.model.tools.identification import experiments, figures, fit
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.law import material_fit
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from coilset.model.material import library
-from coilset.model.material.point import points
+from coilset.model.core.material import library
+from coilset.model.core.material.point import points
 from coilset.verification.references import heun
 
 FREE = [1, 2, 5]  # σ22, σ33, τ23 of the rod vanish

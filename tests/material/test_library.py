@@ -8,9 +8,9 @@ import pytest
 import yaml
 from scipy.integrate import quad
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library
-from coilset.model.material.point import points
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.core.material.point import points
 from coilset.verification.references import heun
 
 

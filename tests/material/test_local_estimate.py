@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from coilset.model.material import library
-from coilset.model.material.law.functions import functions
-from coilset.model.material.point.local import Group, Start, estimate, rough_turn, solve, turn
+from coilset.model.core.material import library
+from coilset.model.core.material.law.functions import functions
+from coilset.model.core.material.point.local import Group, Start, estimate, rough_turn, solve, turn
 
 COUNT = 30
 

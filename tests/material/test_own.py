@@ -5,8 +5,8 @@ import pytest
 from scipy.optimize import root
 
 from coilset.api import Case, InputError, Law, condense, solve
-from coilset.model.material import library
-from coilset.model.material.point.points import initial_state, update
+from coilset.model.core.material import library
+from coilset.model.core.material.point.points import initial_state, update
 from coilset.verification.references.own_laws import drucker, kinematic, kinematic_3d, mises
 
 PRAGER = library.load("linear_kinematic")

@@ -8,14 +8,14 @@ import itertools
 import numpy as np
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library
-from coilset.model.material.creep.in_time import law_in_time
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.functions import CHANGE, TEMPERATURE
-from coilset.model.material.law.law import Law
-from coilset.model.material.point import points
-from coilset.model.material.point.loops import follow
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.functions import CHANGE, TEMPERATURE
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.material.point import points
+from coilset.model.core.material.point.loops import follow
+from coilset.model.physics.time.creep.in_time import law_in_time
 from coilset.verification.references.point_rates import PointRates, Segment
 
 COLD, HOT, CREPT = 293.15, 493.15, 1e-5

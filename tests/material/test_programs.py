@@ -8,8 +8,9 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.material import library, programs
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.material import library
+from coilset.model.tools.identification import programs
 from coilset.scripts.commands.material import app
 from coilset.verification.references import heun
 

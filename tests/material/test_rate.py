@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from coilset.model.base.errors import InputError
-from coilset.model.material.creep.law import RateLaw
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
-from coilset.model.material.point.loops import follow
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.material.point.loops import follow
+from coilset.model.physics.time.creep.law import RateLaw
 
 YIELD, G, NU = 400.0, 80000.0, 0.3
 SLOW, FAST = 1e12, 1e-12  # seconds that an increment takes

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from coilset.model.material import library
-from coilset.model.material.law.hardening_curves import Swift
-from coilset.model.material.law.law import Law
-from coilset.model.material.point import points
-from coilset.model.material.point.local_rows import GROUP
-from coilset.model.material.point.loops import follow
+from coilset.model.core.material import library
+from coilset.model.core.material.law.hardening_curves import Swift
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.material.point import points
+from coilset.model.core.material.point.local_rows import GROUP
+from coilset.model.core.material.point.loops import follow
 
 MATERIALS = ("ck15", "linear_isotropic", "linear_kinematic", "mixed", "ideal_plastic", "voce")
 POINTS = 2 * GROUP + 7  # groups that are full, and one that is not

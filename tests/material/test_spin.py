@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from coilset.model.material import library
-from coilset.model.material.point import points
-from coilset.model.material.point.spin import WHOLE, Crossing, spun
+from coilset.model.core.material import library
+from coilset.model.core.material.point import points
+from coilset.model.physics.back_stresses.spin import WHOLE, Crossing, spun
 
 STATE, BACK = np.array([300.0, 150.0, -80.0]), np.array([20.0, -30.0, 10.0])
 INCREMENT, NONE = np.array([1.1e-3, 2.3e-3, -0.7e-3]), (0.0, 0.0, 0.0)

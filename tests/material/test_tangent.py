@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from coilset.model.material import library
-from coilset.model.material.law.functions import HELD
-from coilset.model.material.point import points
-from coilset.model.material.point.loops import follow
+from coilset.model.core.material import library
+from coilset.model.core.material.law.functions import HELD
+from coilset.model.core.material.point import points
+from coilset.model.core.material.point.loops import follow
 
 STEPS = 10.0 ** np.arange(-2.5, -4.01, -0.5)
 

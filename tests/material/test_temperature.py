@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.base.errors import InputError
-from coilset.model.material import library, programs
-from coilset.model.material.point import points
-from coilset.model.solid.points import MaterialPoints
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.material import library
+from coilset.model.core.material.point import points
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.tools.identification import programs
 from coilset.verification.references import heun
 
 TEMPERATURES = (293.15, 393.15, 593.15)

@@ -10,7 +10,7 @@ import yaml
 
 from coilset.meshes.springs.block import _each_on_the_next, _highest_stack
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.run.examples import EXAMPLES
+from coilset.model.compose.examples import EXAMPLES
 
 EXACT = 1e-9
 

@@ -7,10 +7,10 @@ from mpi4py import MPI
 from coilset.meshes.springs.ends import OPEN
 from coilset.meshes.springs.placement import section_placement
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.rotations.triads import chord_triads as triads
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.core.rotations.triads import chord_triads as triads
 
 ABSCISSAE = np.array([0.2, 0.8])
 CONE = {"shape": "cone", "bottom": 60.0, "top": 30.0}

@@ -5,11 +5,11 @@ import meshio
 import numpy as np
 import pytest
 
-from coilset.meshes.export import write_mesh
-from coilset.meshes.springs.measured import MeasuredSpec
+from coilset.meshes.drawings.export import write_mesh
+from coilset.meshes.measured.measured import MeasuredSpec
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
 
 ENDS = {"form": "closed and ground"}
 FORMATS = [".msh", ".vtu", ".vtk", ".xdmf", ".inp", ".med", ".csv"]

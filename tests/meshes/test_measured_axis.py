@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.springs.measured import MeasuredSpec
+from coilset.meshes.measured.measured import MeasuredSpec
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards.spring_warnings import spring_warnings
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.tools.standards.spring_warnings import spring_warnings
 
 D, WIRE, TURNS, PITCH = 40.0, 5.0, 6.0, 12.0
 BLOCK = 7 * WIRE  # of 6 open turns

@@ -7,12 +7,11 @@ import meshio
 import numpy as np
 import pytest
 
-from coilset.meshes import view
-from coilset.meshes.drawing import drawing
+from coilset.meshes.drawings import drawing, view
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.case import read_case
-from coilset.model.figures import display
+from coilset.model.core.base.errors import CoilsetError, InputError
+from coilset.model.core.case import read_case
+from coilset.model.tools.figures import display
 from coilset.scripts.commands.mesh import mesh
 
 SPRINGS = Path(__file__).parents[2] / "examples" / "springs"

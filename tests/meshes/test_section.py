@@ -6,9 +6,9 @@ import pytest
 import ufl
 from dolfinx import fem
 
-from coilset.meshes.section import section_mesh
-from coilset.meshes.section_shapes import Curve, Oval, Trapezoid, Tube, parse, rectangle, round_wire
-from coilset.model.base.errors import InputError
+from coilset.meshes.sections.mesh import section_mesh
+from coilset.meshes.sections.shapes import Curve, Oval, Trapezoid, Tube, parse, rectangle, round_wire
+from coilset.model.core.base.errors import InputError
 
 
 def area(section):

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.export import write_mesh
-from coilset.meshes.springs.measured import MeasuredSpec
+from coilset.meshes.drawings.export import write_mesh
+from coilset.meshes.measured.measured import MeasuredSpec
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.case import check
-from coilset.model.material import library
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import check
+from coilset.model.core.material import library
 from coilset.verification.spring_references import progressive, representation
 from coilset.verification.spring_references.curved_rod import clamped_rate
 

@@ -5,7 +5,7 @@ import pytest
 
 from coilset.meshes.springs.shapes import Table
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 
 
 def cylinder(turns=2.5):

@@ -4,10 +4,10 @@ import gmsh
 import numpy as np
 import pytest
 
-from coilset.meshes import step as module
+from coilset.meshes.drawings import step as module
+from coilset.meshes.drawings.step import step
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.meshes.step import step
-from coilset.model.base.errors import CoilsetError
+from coilset.model.core.base.errors import CoilsetError
 from coilset.scripts.main import app
 
 SHORT = {"wire_diameter": 3.0, "mean_diameter": 20.0, "turns": 2.0, "pitch": 8.0}

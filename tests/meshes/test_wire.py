@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.standards.case_sheet import case_sheet
-from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.rows import sections
-from coilset.model.standards.spring_data import spring_data
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.tools.sheet.rows import sections
+from coilset.model.tools.standards.case_sheet import case_sheet
+from coilset.model.tools.standards.cylinder import Cylinder
+from coilset.model.tools.standards.spring_data import spring_data
 
 OVAL = {"oval": {"width": 4.0, "height": 5.0}}
 RECTANGLE = {"rectangle": {"width": 6.0, "height": 3.0, "corner": 0.5}}

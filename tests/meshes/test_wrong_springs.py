@@ -3,8 +3,8 @@
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
 
 RIGHT = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 12.0}
 CONE = {"shape": "cone", "bottom": 40.0, "top": 30.0}

@@ -3,8 +3,8 @@
 import pytest
 from mpi4py import MPI
 
-from coilset.model.rod import compiled
-from coilset.model.rod.elements import THESIS
+from coilset.model.core.rod import compiled
+from coilset.model.core.rod.elements import THESIS
 
 
 @pytest.mark.parametrize("lacking", [(), (0,), (-1,), (0, -1)])

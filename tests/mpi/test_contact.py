@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.contact.base import TrialPositions
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.core.contact.base import TrialPositions
 
 pytestmark = pytest.mark.mpi
 COMM = MPI.COMM_WORLD

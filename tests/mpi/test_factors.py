@@ -5,7 +5,7 @@ import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.system.factors import FILL_REDUCING, NATURAL, GatheredLU, lu, negative_pivots
+from coilset.model.core.equilibrium.system.factors import FILL_REDUCING, NATURAL, GatheredLU, lu, negative_pivots
 
 pytestmark = pytest.mark.mpi
 COMM = MPI.COMM_WORLD

@@ -5,17 +5,17 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.section import section_mesh
-from coilset.meshes.section_shapes import round_wire
-from coilset.meshes.solid import coil_section
-from coilset.meshes.solid_grid import SectionGrid
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.slice.problem import SliceProblem
-from coilset.model.slice.slice import Coil, Slice
-from coilset.model.solid.points import MaterialPoints
-from coilset.model.solid.problem import SolidProblem
-from coilset.model.solid.program import AxialProgram
+from coilset.meshes.sections.mesh import section_mesh
+from coilset.meshes.sections.shapes import round_wire
+from coilset.meshes.solids.grid import SectionGrid
+from coilset.meshes.solids.solid import coil_section
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.physics.slice.problem import SliceProblem
+from coilset.model.physics.slice.slice import Coil, Slice
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.physics.solid.problem import SolidProblem
+from coilset.model.physics.solid.program import AxialProgram
 
 pytestmark = pytest.mark.mpi
 COMM = MPI.COMM_WORLD

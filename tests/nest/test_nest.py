@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.case.case import check
-from coilset.model.nest.file import Press, read_nest
-from coilset.model.nest.nest import Member, Pressed, press
-from coilset.model.nest.output import COLUMNS
-from coilset.model.nest.plan import plan
-from coilset.model.results.records.labels import within
-from coilset.model.results.records.record import Errors
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.case.case import check
+from coilset.model.core.results.records.labels import within
+from coilset.model.core.results.records.record import Errors
+from coilset.model.tools.nest.file import Press, read_nest
+from coilset.model.tools.nest.nest import Member, Pressed, press
+from coilset.model.tools.nest.output import COLUMNS
+from coilset.model.tools.nest.plan import plan
 from coilset.scripts.commands.nest import nest as nest_command
 
 OUTER = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 14.0}

@@ -3,10 +3,10 @@
 import yaml
 from mpi4py import MPI
 
-from coilset.model.case import check, read_case
-from coilset.model.material import library
-from coilset.model.report.page import complete
-from coilset.model.results.files.opened import open_run
+from coilset.model.core.case import check, read_case
+from coilset.model.core.material import library
+from coilset.model.core.results.files.opened import open_run
+from coilset.model.tools.report.page import complete
 from coilset.scripts.commands.solve import solve
 
 PROGRAM = "loading=[{to: {travel: 2}, steps: 1}]"

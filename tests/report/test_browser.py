@@ -14,13 +14,13 @@ import pytest
 import yaml
 from browser import ENTER, TAB, chromium, missing
 
-from coilset.model.report.design_page import write_design_report
-from coilset.model.report.page import write_report
-from coilset.model.report.sweep_page import write_sweep_report
-from coilset.model.results.files.opened import open_run
-from coilset.model.sweep import dataset
-from coilset.model.sweep.journal import Journal
-from coilset.model.sweep.plan import Plan
+from coilset.model.core.results.files.opened import open_run
+from coilset.model.tools.report.design_page import write_design_report
+from coilset.model.tools.report.page import write_report
+from coilset.model.tools.report.sweep_page import write_sweep_report
+from coilset.model.tools.sweep import dataset
+from coilset.model.tools.sweep.journal import Journal
+from coilset.model.tools.sweep.plan import Plan
 from coilset.scripts.commands.design import design
 
 DRIVER, AXE = os.environ.get("COILSET_WEBDRIVER", ""), os.environ.get("COILSET_AXE", "")

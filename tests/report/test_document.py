@@ -9,16 +9,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from coilset.meshes.silhouette import silhouette
+from coilset.meshes.drawings.silhouette import silhouette
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import check, read_case
-from coilset.model.report.document.content import document
-from coilset.model.report.document.output import WRITERS
-from coilset.model.report.document.words import Words
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.standards import from_results
-from coilset.model.standards.case_sheet import case_sheet
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check, read_case
+from coilset.model.tools.document.content import document
+from coilset.model.tools.document.output import WRITERS
+from coilset.model.tools.document.words import Words
+from coilset.model.tools.sheet import from_results
+from coilset.model.tools.standards.case_sheet import case_sheet
 from coilset.scripts.main import app
 
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 65.0, "hand": "left"}

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.figures.panels.panel import with_unit
-from coilset.model.nest.output import headline
-from coilset.model.results.records.labels import within
+from coilset.model.core.results.records.labels import within
+from coilset.model.tools.figures.panels.panel import with_unit
+from coilset.model.tools.nest.output import headline
 from coilset.scripts.commands.nest import nest
 from coilset.scripts.commands.report import report
 

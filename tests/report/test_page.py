@@ -14,21 +14,21 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.design.conditions import SIZE_OF_ZERO
-from coilset.model.figures.animation import animate
-from coilset.model.figures.panels.characteristic import NAMED, characteristic
-from coilset.model.figures.panels.material_curves import material_curve
-from coilset.model.figures.panels.phases import phases
-from coilset.model.figures.panels.seats import force_centre
-from coilset.model.figures.series import write_series
-from coilset.model.figures.wire_surface import closed, frames, inside, shear_around, tubes
-from coilset.model.material import library
-from coilset.model.report import design_page
-from coilset.model.report.page import CHAPTERS, write_report
-from coilset.model.report.render import GLOSSARY
-from coilset.model.results.files.opened import open_run
-from coilset.model.run.load_history import LoadHistory
+from coilset.model.compose.load_history import LoadHistory
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.material import library
+from coilset.model.core.results.files.opened import open_run
+from coilset.model.tools.design.conditions import SIZE_OF_ZERO
+from coilset.model.tools.figures.animation import animate
+from coilset.model.tools.figures.panels.characteristic import NAMED, characteristic
+from coilset.model.tools.figures.panels.material_curves import material_curve
+from coilset.model.tools.figures.panels.phases import phases
+from coilset.model.tools.figures.panels.seats import force_centre
+from coilset.model.tools.figures.series import write_series
+from coilset.model.tools.figures.wire_surface import closed, frames, inside, shear_around, tubes
+from coilset.model.tools.report import design_page
+from coilset.model.tools.report.page import CHAPTERS, write_report
+from coilset.model.tools.report.render import GLOSSARY
 from coilset.scripts.commands.report import report
 from coilset.scripts.commands.sheet import Options, sheet
 from coilset.scripts.commands.solve import solve

@@ -8,11 +8,11 @@ from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
-from coilset.model.base.errors import InputError
-from coilset.model.figures.animation import animate
-from coilset.model.figures.display import ensure
-from coilset.model.figures.series import write_series
-from coilset.model.results.files.opened import open_run
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.results.files.opened import open_run
+from coilset.model.tools.figures.animation import animate
+from coilset.model.tools.figures.display import ensure
+from coilset.model.tools.figures.series import write_series
 
 ANGLES = 24
 

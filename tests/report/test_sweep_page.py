@@ -13,14 +13,14 @@ import xarray as xr
 import yaml
 from mpi4py import MPI
 
-from coilset.model.case.settings import put
-from coilset.model.report.render import packed
-from coilset.model.report.sweep_page import write_sweep_report
-from coilset.model.report.warning_words import KINDS
-from coilset.model.sweep import dataset
-from coilset.model.sweep.evaluate import evaluate
-from coilset.model.sweep.journal import Journal, read_records
-from coilset.model.sweep.plan import Plan
+from coilset.model.core.case.settings import put
+from coilset.model.tools.report.render import packed
+from coilset.model.tools.report.sweep_page import write_sweep_report
+from coilset.model.tools.report.warning_words import KINDS
+from coilset.model.tools.sweep import dataset
+from coilset.model.tools.sweep.evaluate import evaluate
+from coilset.model.tools.sweep.journal import Journal, read_records
+from coilset.model.tools.sweep.plan import Plan
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 CASE = {

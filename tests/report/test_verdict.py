@@ -1,8 +1,8 @@
 """The verdict: checks that failed by their warnings, and those that could not be made."""
 
-from coilset.model.report.answer import answer
-from coilset.model.report.first_sheet import results
-from coilset.model.report.verdict import checks, verdict
+from coilset.model.tools.report.answer import answer
+from coilset.model.tools.report.first_sheet import results
+from coilset.model.tools.report.verdict import checks, verdict
 
 GOOD = {"complete": True, "warnings": [], "material": "ck15"}
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.figures.panels.along_wire import moments_along_wire
-from coilset.model.figures.panels.spring_view import TALLEST, scene_of
-from coilset.model.results.files.opened import open_run
+from coilset.model.core.results.files.opened import open_run
+from coilset.model.tools.figures.panels.along_wire import moments_along_wire
+from coilset.model.tools.figures.panels.spring_view import TALLEST, scene_of
 from coilset.scripts.commands.solve import solve
 
 PROGRAM = "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}}]"

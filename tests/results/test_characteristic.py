@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.results.characteristic import ERROR, Run, place_at
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.results.characteristic import ERROR, Run, place_at
 
 PRESSED = np.array([1.0, 2.5, 4.0, 6.0, 8.0, 10.0])
 FREED = np.array([9.5, 8.5, 7.0, 5.5])

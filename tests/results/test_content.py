@@ -5,8 +5,8 @@ import subprocess
 
 import pytest
 
-from coilset.model.base import content
-from coilset.model.base.version import versions
+from coilset.model.core.base import content
+from coilset.model.core.base.version import versions
 
 
 @pytest.fixture

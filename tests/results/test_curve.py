@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from coilset.model.base.between_steps import Between, part
-from coilset.model.figures.panels.characteristic import compressed
-from coilset.model.figures.panels.section_map import element_at
-from coilset.model.figures.scene import chosen
+from coilset.model.core.base.between_steps import Between, part
+from coilset.model.tools.figures.panels.characteristic import compressed
+from coilset.model.tools.figures.panels.section_map import element_at
+from coilset.model.tools.figures.scene import chosen
 
 
 def test_the_curve_passes_its_steps_and_never_beyond_their_neighbours():

@@ -5,8 +5,8 @@ import pytest
 
 import coilset.open
 from coilset.api import Case, slice_, solve
-from coilset.model.base.errors import InputError
-from coilset.model.results.diffraction import Wire, seen_stress
+from coilset.model.core.base.errors import InputError
+from coilset.model.tools.diffraction.diffraction import Wire, seen_stress
 
 R = 2.0
 

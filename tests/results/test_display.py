@@ -10,7 +10,7 @@ import pytest
 # Python hands on the default action of a signal that it handles itself, as in a command.
 PRESSED = """
 import os, signal, time
-from coilset.model.figures.display import ensure
+from coilset.model.tools.figures.display import ensure
 signal.signal(signal.SIGINT, lambda *_: None)
 assert ensure()
 os.killpg(0, signal.SIGINT)

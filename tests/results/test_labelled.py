@@ -6,8 +6,8 @@ import pytest
 from mpi4py import MPI
 
 import coilset.open
-from coilset.model.base.errors import InputError
-from coilset.model.results.files.opened import table
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.results.files.opened import table
 from coilset.scripts.commands.solve import solve
 
 CASE = """

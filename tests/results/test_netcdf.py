@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from coilset.model.results.files.netcdf import Variable, coordinates, write_netcdf
+from coilset.model.core.results.files.netcdf import Variable, coordinates, write_netcdf
 
 ATTRS = {"title": "made up"}
 

@@ -7,12 +7,12 @@ import pytest
 import xarray as xr
 from mpi4py import MPI
 
-from coilset.model.base.version import __version__
-from coilset.model.case import check, read_case
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.results.records.provenance import origin
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.version import __version__
+from coilset.model.core.case import check, read_case
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.results.records.provenance import origin
 from coilset.scripts.commands.solve import solve
 
 PROGRAM = "loading=[{to: {travel: 3}, steps: 2}]"

@@ -12,24 +12,34 @@ from matplotlib.image import imread
 from mpi4py import MPI
 from scipy.interpolate import RegularGridInterpolator
 
-from coilset.model.base.style import QUARTERED, round_end
-from coilset.model.case import check, read_case
-from coilset.model.figures.display import ensure
-from coilset.model.figures.panels import buckling, seats
-from coilset.model.figures.panels.characteristic import characteristic
-from coilset.model.figures.panels.goodman import goodman as goodman_panel
-from coilset.model.figures.panels.panel import GREY
-from coilset.model.figures.panels.section_map import element_at, shear_map
-from coilset.model.figures.png import png_figure, write_png
-from coilset.model.figures.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Arrangement, caption, springs
-from coilset.model.figures.wire_surface import inside
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.records.labels import plain
-from coilset.model.results.records.provenance import origin
-from coilset.model.results.records.record import BucklingMode, Step
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards import goodman
-from coilset.model.summary.run_files import run_of
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_files import run_of
+from coilset.model.core.base.style import QUARTERED, round_end
+from coilset.model.core.case import check, read_case
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.results.records.labels import plain
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.core.results.records.record import BucklingMode, Step
+from coilset.model.tools.figures.display import ensure
+from coilset.model.tools.figures.panels import buckling, seats
+from coilset.model.tools.figures.panels.characteristic import characteristic
+from coilset.model.tools.figures.panels.goodman import goodman as goodman_panel
+from coilset.model.tools.figures.panels.panel import GREY
+from coilset.model.tools.figures.panels.section_map import element_at, shear_map
+from coilset.model.tools.figures.png import png_figure, write_png
+from coilset.model.tools.figures.scene import (
+    ABOVE,
+    BAR,
+    COLUMN,
+    LABELS,
+    MOST_HEIGHT,
+    WIDTH,
+    Arrangement,
+    caption,
+    springs,
+)
+from coilset.model.tools.figures.wire_surface import inside
+from coilset.model.tools.standards import goodman
 
 
 @pytest.mark.parametrize("springs", [1, 2, 4])
@@ -275,7 +285,7 @@ def test_all_figures_share_one_look():
     """What the file says is what they are drawn with; no figure brings parameters of its own."""
     import matplotlib as mpl
 
-    from coilset.model.base.style import FILE, STYLE
+    from coilset.model.core.base.style import FILE, STYLE
 
     with mpl.rc_context():
         mpl.style.use(FILE)

@@ -4,9 +4,9 @@ from dataclasses import fields
 
 import pytest
 
-from coilset.model.results.loading import Loading, loading_of
-from coilset.model.results.quantities import ENTRIES, ORDER, SERIES, quantities, quantity
-from coilset.model.results.records.summary_entries import Summary
+from coilset.model.core.results.loading import Loading, loading_of
+from coilset.model.core.results.quantities import ENTRIES, ORDER, SERIES, quantities, quantity
+from coilset.model.core.results.records.summary_entries import Summary
 
 PRESSED = {
     "set_mm": 1.23456,

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.between_steps import Between
-from coilset.model.case import read_case
-from coilset.model.results.records.rates import finished, first_compression, makers_rate, tension
-from coilset.model.results.records.record import Step
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.between_steps import Between
+from coilset.model.core.case import read_case
+from coilset.model.core.results.records.rates import finished, first_compression, makers_rate, tension
+from coilset.model.core.results.records.record import Step
 
 TRAVEL = np.linspace(0.0, 10.0, 21)
 

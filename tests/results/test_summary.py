@@ -5,12 +5,12 @@ from dataclasses import fields, replace
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.results.records.releases import releases
-from coilset.model.results.records.summary_entries import NUMBERS, UNSEEN, Summary
-from coilset.model.results.records.units import unit_of
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise, summary
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise, summary
+from coilset.model.core.case import read_case
+from coilset.model.core.results.records.releases import releases
+from coilset.model.core.results.records.summary_entries import NUMBERS, UNSEEN, Summary
+from coilset.model.core.results.records.units import unit_of
 
 COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9"]
 

@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.warning import Warning
-from coilset.model.case import read_case
-from coilset.model.case.material import case_law
-from coilset.model.material.creep.entries import CreepTests
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.records.record import Result, Step
-from coilset.model.run.analysis import Analysis
-from coilset.model.section import surface
-from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.summary.summary import summarise
-from coilset.model.summary.warnings import accuracy_warning, run_warnings, step_warnings
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.compose.warnings import accuracy_warning, run_warnings, step_warnings
+from coilset.model.core.base.warning import Warning
+from coilset.model.core.case import read_case
+from coilset.model.core.case.material import case_law
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.core.results.records.record import Result, Step
+from coilset.model.core.section import surface
+from coilset.model.physics.time.creep.entries import CreepTests
+from coilset.model.tools.standards.case_warnings import case_warnings
 from coilset.scripts.commands.solve import solve
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]

@@ -6,11 +6,11 @@ from dolfinx import fem
 from dolfinx.fem.petsc import assemble_matrix
 from petsc4py import PETSc
 
-from coilset.model.contact.base import Contribution
-from coilset.model.equilibrium.system.layout import LineLayout
-from coilset.model.equilibrium.system.matrix import TangentMatrix
-from coilset.model.rod import element_kernel, forms
-from coilset.model.rod.elements import MIXED, THESIS
+from coilset.model.core.contact.base import Contribution
+from coilset.model.core.equilibrium.system.layout import LineLayout
+from coilset.model.core.equilibrium.system.matrix import TangentMatrix
+from coilset.model.core.rod import element_kernel, forms
+from coilset.model.core.rod.elements import MIXED, THESIS
 
 ELEMENTS = 11  # no multiple of the elements that go through together
 

@@ -6,8 +6,8 @@ import pytest
 import ufl
 from mpi4py import MPI
 
-from coilset.model.rod import compiled
-from coilset.model.rod.elements import MIXED, THESIS
+from coilset.model.core.rod import compiled
+from coilset.model.core.rod.elements import MIXED, THESIS
 
 
 @pytest.fixture

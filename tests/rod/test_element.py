@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from coilset.model.equilibrium.system.layout import LineLayout
-from coilset.model.equilibrium.system.load import Load
-from coilset.model.equilibrium.system.matrix import TangentMatrix
-from coilset.model.equilibrium.system.system import System
-from coilset.model.material import library
-from coilset.model.rod.elements import MIXED, THESIS
+from coilset.model.core.equilibrium.system.layout import LineLayout
+from coilset.model.core.equilibrium.system.load import Load
+from coilset.model.core.equilibrium.system.matrix import TangentMatrix
+from coilset.model.core.equilibrium.system.system import System
+from coilset.model.core.material import library
+from coilset.model.core.rod.elements import MIXED, THESIS
 
 LENGTH, RADIUS = 80.0, 2.5
 SEATS = np.zeros(12)

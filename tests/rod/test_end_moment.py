@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.material import library
+from coilset.model.core.material import library
 from coilset.verification.chain import ROTATION_X, ROTATION_Y, ROTATION_Z, chain, straight
 
 LENGTH, RADIUS, STEPS = 100.0, 0.05, 12

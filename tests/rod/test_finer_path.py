@@ -5,16 +5,16 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.springs.placement import straight
-from coilset.model.body.state import State, Where
-from coilset.model.material import library
-from coilset.model.rod import section_states
-from coilset.model.rod.elements import THESIS
-from coilset.model.rod.finer_path import FinerPath
-from coilset.model.runtime import threads
-from coilset.model.runtime.threads import Threads
-from coilset.model.section.kinds import make_sections
-from coilset.model.section.rules import polar
-from coilset.model.section.warping import KNOWN
+from coilset.model.core.body.state import State, Where
+from coilset.model.core.material import library
+from coilset.model.core.rod import section_states
+from coilset.model.core.rod.elements import THESIS
+from coilset.model.core.runtime import threads
+from coilset.model.core.runtime.threads import Threads
+from coilset.model.core.section.kinds import make_sections
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.accuracy.finer_path import FinerPath
+from coilset.model.physics.warping.warping import KNOWN
 
 TWIST, BENDING = 3, 4  # of the section strains
 

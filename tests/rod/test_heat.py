@@ -7,11 +7,11 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.model.base.entry import check_entries
-from coilset.model.base.errors import InputError
-from coilset.model.case.case import check
-from coilset.model.case.phases import Phase
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.entry import check_entries
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case.case import check
+from coilset.model.core.case.phases import Phase
 from coilset.verification.cases.time.heat_along_wire import exact, fin, material
 from coilset.verification.study import Study
 

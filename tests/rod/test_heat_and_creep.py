@@ -6,13 +6,13 @@ import yaml
 from mpi4py import MPI
 
 from coilset.meshes.springs.placement import straight
-from coilset.model.base.errors import InputError
-from coilset.model.case.case import check
-from coilset.model.material import library
-from coilset.model.material.creep.law import CreepLaw
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.kinds import make_sections
-from coilset.model.section.rules import polar
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case.case import check
+from coilset.model.core.material import library
+from coilset.model.core.section.kinds import make_sections
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.time.creep.law import CreepLaw
 
 COLD, WARM = 293.15, 373.15
 SPRING = {

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.rotations.triads import chord_triads
+from coilset.model.core.rotations.triads import chord_triads
 
 
 def test_triads_are_right_handed_with_the_chord_first():

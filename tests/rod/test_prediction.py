@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.material import library
-from coilset.model.rod import rod as rods
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.core.material import library
+from coilset.model.core.rod import rod as rods
 from coilset.verification.cases.rods.slender_rods import circles, elastica
 
 LENGTH, WANTED = 80.0, 8

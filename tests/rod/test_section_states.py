@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.rod import section_states
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
+from coilset.model.core.rod import section_states
 
 SMALL = ["mesh.elements_per_turn=10", "mesh.section={radial: 3, angular: 8}"]
 HELD = "[{to: {travel: 14}, steps: 3}, {hold: {hours: 100}, steps: 2}, {to: {force: 0}, steps: 2}]"

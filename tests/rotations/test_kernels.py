@@ -5,8 +5,8 @@ import pytest
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from coilset.model.rotations import kernels
-from coilset.model.rotations.vectors import carried, cross_matrix, nearest_vector, rotation_matrix
+from coilset.model.core.rotations import kernels
+from coilset.model.core.rotations.vectors import carried, cross_matrix, nearest_vector, rotation_matrix
 
 ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 1e-4, 9.9e-4, 1.1e-3, 0.3, 2.0, 2.69, 2.7, 3.1]
 ANGLES += [np.pi - part for part in (1e-6, 1e-9, 1e-12)]

@@ -5,8 +5,8 @@ import pytest
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from coilset.model.rotations import kernels
-from coilset.model.rotations.vectors import (
+from coilset.model.core.rotations import kernels
+from coilset.model.core.rotations.vectors import (
     AXES,
     chart_derivatives,
     cross_matrix,

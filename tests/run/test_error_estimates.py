@@ -5,13 +5,13 @@ import json
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.case import check, read_case
-from coilset.model.results.records.labels import largest_errors, within
-from coilset.model.run import error_estimates
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.error_estimates import coarse_case
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.case import check, read_case
+from coilset.model.core.results.records.labels import largest_errors, within
+from coilset.model.tools.further_runs import error_estimates
+from coilset.model.tools.further_runs.error_estimates import coarse_case
 
 MADE = ["mesh.elements_per_turn=8", "mesh.section.radial=3", "mesh.section.angular=8"]
 PRESSED = "loading=[{to: {travel: 12}, steps: 4}, {to: {force: 0}, steps: 1}]"
@@ -194,7 +194,7 @@ def test_a_companion_that_finds_no_equilibrium_leaves_the_errors_unknown(example
     def fails(*_):
         raise SolveError("no equilibrium")
 
-    monkeypatch.setattr("coilset.model.run.error_estimates._Watch", fails)
+    monkeypatch.setattr("coilset.model.tools.further_runs.error_estimates._Watch", fails)
     _, summary = analysed(example, "ends=clamped")
     assert summary["estimated_force_error_N"] is None
     assert summary["estimated_errors"]["steps"]["force_N"] > 0.0

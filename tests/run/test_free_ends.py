@@ -7,12 +7,12 @@ import pytest
 from mpi4py import MPI
 from scipy.spatial.transform import Rotation
 
-from coilset.model.case import check, read_case
-from coilset.model.equilibrium.path.free_ends import mean_rotation, nearest_rotation
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
-from coilset.model.uniform_coil.rod import press
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import check, read_case
+from coilset.model.core.equilibrium.path.free_ends import mean_rotation, nearest_rotation
+from coilset.model.core.results.files.checkpoint import Checkpoint
+from coilset.model.physics.uniform_coil.rod import press
 
 MADE = ["mesh.elements_per_turn=8", "mesh.section.radial=3", "mesh.section.angular=8", "accuracy=none"]
 PRESSED = "{to: {travel: 16}, steps: 8}, {to: {force: 0}, steps: 3}"

@@ -6,8 +6,8 @@ import weakref
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
 
 SMALL = ["mesh={elements_per_turn: 6, section: {radial: 2, angular: 6}}"]
 PRESSED = "loading=[{to: {travel: 2}, steps: 2}, {to: {force: 0}, steps: 1}]"

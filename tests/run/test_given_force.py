@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from coilset.model.case import check
-from coilset.model.results.records.record import Result, Setup, Step
-from coilset.model.run.build import forces_given
-from coilset.model.summary.warnings import allowed_force
+from coilset.model.compose.build import forces_given
+from coilset.model.compose.warnings import allowed_force
+from coilset.model.core.case import check
+from coilset.model.core.results.records.record import Result, Setup, Step
 
 
 def test_forces_of_the_load_program() -> None:

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.results.records.record import Errors, RunErrors
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.refinement import left_open, left_out, needed, within_accuracy
-from coilset.model.summary.warnings import run_warnings
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.warnings import run_warnings
+from coilset.model.core.case import read_case
+from coilset.model.core.results.records.record import Errors, RunErrors
+from coilset.model.tools.further_runs.refinement import left_open, left_out, needed, within_accuracy
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.interrupt import Interrupt
 
@@ -92,7 +92,7 @@ def test_what_is_left_out_is_stated_with_its_cost(example, monkeypatch):
 
 def test_the_warning_says_what_was_left_out(example, monkeypatch):
     """Of a run that would be finer if that might take any longer."""
-    monkeypatch.setattr("coilset.model.run.refinement.MOST", 1.0)
+    monkeypatch.setattr("coilset.model.tools.further_runs.refinement.MOST", 1.0)
     analysis = Analysis(read_case(example, FINE), MPI.COMM_SELF)
     last = within_accuracy(analysis, lambda one, finer: one.run())
     (warning,) = (one for one in run_warnings(last.setup, last.result) if one.name == "error")

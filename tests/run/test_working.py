@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check, read_case
-from coilset.model.results.records.working import is_working_number, names_of
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards import en13906
-from coilset.model.summary.summary import summarise
-from coilset.model.uniform_coil.estimate import estimate
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check, read_case
+from coilset.model.physics.uniform_coil.estimate import estimate
+from coilset.model.physics.working.working import is_working_number, names_of
+from coilset.model.tools.standards import en13906
 
 MADE = ["mesh.elements_per_turn=8", "mesh.section.radial=3", "mesh.section.angular=8", "accuracy=none"]
 PRESSED = "{to: {travel: 12}, steps: 6}, {to: {force: 0}, steps: 2}"

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from coilset.model.runtime.apart import OURS, SAFE_PATH, elsewhere
+from coilset.model.core.runtime.apart import OURS, SAFE_PATH, elsewhere
 
 FILES = {
     "petscrc": "-coilset_found 1\n",
@@ -22,7 +22,7 @@ PROGRAM = """
 import json, os, sys
 before = os.getcwd()
 import coilset.model
-from coilset.model.runtime.libraries import link_beside
+from coilset.model.core.runtime.libraries import link_beside
 import ffcx, matplotlib, numba, dolfinx
 from dolfinx import jit
 from petsc4py import PETSc

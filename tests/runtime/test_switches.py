@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from coilset.model.runtime.switches import SAVINGS, enabled
+from coilset.model.core.runtime.switches import SAVINGS, enabled
 
 PROGRAM = "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}, steps: 2}]"
 SMALL = ["--set", "mesh.elements_per_turn=8", "--set", "accuracy=none", "--set", PROGRAM]

@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 from coilset.meshes.springs.placement import straight
-from coilset.model.material import library
-from coilset.model.section.kinds import make_sections
-from coilset.model.section.rules import polar
+from coilset.model.core.material import library
+from coilset.model.core.section.kinds import make_sections
+from coilset.model.core.section.rules import polar
 
 R, TERMS = 2.5, [(200000.0, 1000.0), (22500.0, 150.0), (2000.0, 20.0)]  # C and γ of the file
 LAW = library.load("chaboche")

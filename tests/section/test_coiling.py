@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from coilset.model.base.errors import SolveError
-from coilset.model.manufacture.coiling import bent, coil
-from coilset.model.manufacture.wire import Wire
-from coilset.model.material import library
-from coilset.model.material.creep.law import CreepLaw
-from coilset.model.material.point.points import initial_state
-from coilset.model.section.rules import polar
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.material import library
+from coilset.model.core.material.point.points import initial_state
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.manufacture.coiling import bent, coil
+from coilset.model.physics.manufacture.wire import Wire
+from coilset.model.physics.time.creep.law import CreepLaw
 from coilset.verification.references.springback import Bar
 
 RADIUS = 2.5

@@ -5,11 +5,11 @@ import pytest
 from scipy.special import hyp2f1
 
 from coilset.meshes.springs.placement import straight
-from coilset.model.material.creep.law import CreepLaw
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
-from coilset.model.section.kinds import KINDS, make_sections
-from coilset.model.section.rules import polar
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.kinds import KINDS, make_sections
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.time.creep.law import CreepLaw
 
 G, A, N, P, RIM = 80000.0, 1e-20, 6.0, 0.3, 700.0  # of γ = A τ^N t^p
 R = 2.5

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.case.case import check
-from coilset.model.material import library
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.ground import section_points
-from coilset.model.section.outlined_section import Segment
-from coilset.model.section.rules import polar, rim
-from coilset.model.section.shape import curved_shape
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case.case import check
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import polar, rim
+from coilset.model.core.section.shape import curved_shape
+from coilset.model.physics.outlines.ground import section_points
+from coilset.model.physics.outlines.outlined_section import Segment
 from coilset.verification.cases.sections.ground_sections import CutCoil, slice_rate
 from coilset.verification.one_section.slice_references import ring_sector
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.section_shapes import Curve, Oval, Trapezoid, Tube, rectangle
-from coilset.model.base.errors import InputError
-from coilset.model.section.outlined_section import Outlined, Segment
-from coilset.model.section.rules import SURFACE_POINTS
+from coilset.meshes.sections.shapes import Curve, Oval, Trapezoid, Tube, rectangle
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.section.rules import SURFACE_POINTS
+from coilset.model.physics.outlines.outlined_section import Outlined, Segment
 from coilset.verification.cases.sections import yielding_ring
 
 RADIUS = 2.5

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from coilset.model.manufacture.peening import Layer, peen, peening_warnings
-from coilset.model.material import library
-from coilset.model.material.point.points import initial_state
-from coilset.model.section.rules import polar, rim
+from coilset.model.core.material import library
+from coilset.model.core.material.point.points import initial_state
+from coilset.model.core.section.rules import polar, rim
+from coilset.model.physics.manufacture.peening import Layer, peen, peening_warnings
 
 RADIUS = 2.5
 LAYER = Layer(np.array([0.0, 0.5, 1.5]), np.array([2e-3, 2.5e-3, 0.0]))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.figures.rings import ROUND, rings
-from coilset.model.section.rules import abramowitz9, polar
+from coilset.model.core.section.rules import abramowitz9, polar
+from coilset.model.tools.figures.rings import ROUND, rings
 
 
 def test_waves_round_a_ring_are_carried_between_its_points():

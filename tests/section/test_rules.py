@@ -5,8 +5,8 @@ from math import gamma, pi
 import numpy as np
 import pytest
 
-from coilset.model.case.case import SectionSpec
-from coilset.model.section.rules import abramowitz9, polar, upper_half
+from coilset.model.core.case.case import SectionSpec
+from coilset.model.core.section.rules import abramowitz9, polar, upper_half
 
 
 def moment(a, b):

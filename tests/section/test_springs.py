@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.core.results.files.checkpoint import Checkpoint
 
 PROGRAM = "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}, steps: 2}]"
 COARSE = ["mesh.elements_per_turn=8", "ends=clamped", "accuracy=none", PROGRAM]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from coilset.meshes.springs.placement import Placement, round_wire
-from coilset.model.section.kinds import KINDS, make_sections
-from coilset.model.section.rules import polar
+from coilset.model.core.section.kinds import KINDS, make_sections
+from coilset.model.core.section.rules import polar
 from coilset.verification.spring_references.curved_rod import section_stiffness
 
 RADIUS = np.array([2.5])

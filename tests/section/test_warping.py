@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.section_shapes import Tube
+from coilset.meshes.sections.shapes import Tube
 from coilset.meshes.springs.placement import straight
-from coilset.model.material import library
-from coilset.model.section.condensation import TOLERANCE, place, strains
-from coilset.model.section.kinds import make_sections
-from coilset.model.section.outlined_section import Outlined
-from coilset.model.section.polynomials import Basis
-from coilset.model.section.rules import polar, rim
+from coilset.model.core.material import library
+from coilset.model.core.section.kinds import make_sections
+from coilset.model.core.section.rules import polar, rim
+from coilset.model.physics.outlines.outlined_section import Outlined
+from coilset.model.physics.warping.condensation import TOLERANCE, place, strains
+from coilset.model.physics.warping.polynomials import Basis
 from coilset.verification.one_section.helix import HelixSection
 from coilset.verification.solid_study import references
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.section import section_mesh
-from coilset.meshes.section_shapes import round_wire
-from coilset.model.material import library
-from coilset.model.slice.slice import Coil, Slice
+from coilset.meshes.sections.mesh import section_mesh
+from coilset.meshes.sections.shapes import round_wire
+from coilset.model.core.material import library
+from coilset.model.physics.slice.slice import Coil, Slice
 
 
 @pytest.fixture

@@ -7,15 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from coilset.meshes.section_shapes import Curve
-from coilset.model.base.errors import InputError
-from coilset.model.case import check, read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.slice import output
-from coilset.model.slice.analysis import TOUCHING, SliceAnalysis
-from coilset.model.slice.summary import UNSEEN, summarise
-from coilset.model.summary import summary as of_spring
+from coilset.meshes.sections.shapes import Curve
+from coilset.model.compose import summary as of_spring
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check, read_case
+from coilset.model.physics.slice.analysis import TOUCHING, SliceAnalysis
+from coilset.model.tools.studies import slice_output as output
+from coilset.model.tools.studies.slice_summary import UNSEEN, summarise
 from coilset.scripts.commands.slice import slice_case
 from coilset.verification.spring_references.yielding_ring import Ring, Steel, tube
 

@@ -5,12 +5,12 @@ import itertools
 import numpy as np
 import pytest
 
-from coilset.meshes.section_shapes import Trapezoid
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.slice.contact import SelfContact
-from coilset.model.slice.problem import SliceProblem
-from coilset.model.slice.watch import Watch
-from coilset.model.solid.continuum import mises
+from coilset.meshes.sections.shapes import Trapezoid
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.physics.slice.contact import SelfContact
+from coilset.model.physics.slice.problem import SliceProblem
+from coilset.model.physics.slice.watch import Watch
+from coilset.model.physics.solid.continuum import mises
 from coilset.verification.one_section.recorded_solids import RECORDED
 from coilset.verification.one_section.slice_references import ring_sector
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.model.slice.contact import SelfContact
+from coilset.model.physics.slice.contact import SelfContact
 
 
 def forces(body):

@@ -13,9 +13,9 @@ from scipy.linalg import logm, polar
 from solid_calls import commit, internal_forces, tangent
 from solid_laws import Elastic, IdealPlastic
 
-from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
-from coilset.model.base.compat import interpolation_points
-from coilset.model.solid.solid import Solid
+from coilset.meshes.solids.solid import SectionGrid, coil_section, straight_wire
+from coilset.model.core.base.compat import interpolation_points
+from coilset.model.physics.solid.solid import Solid
 
 DOUBLE = np.array([1.0, 1, 1, 2, 2, 2])
 

@@ -5,9 +5,9 @@ from scipy.linalg import expm, logm, polar
 from scipy.spatial.transform import Rotation
 from solid_laws import Elastic
 
-from coilset.model.material import library
-from coilset.model.solid.kinematics import push_forward, stretches
-from coilset.model.solid.points import MaterialPoints
+from coilset.model.core.material import library
+from coilset.model.physics.solid.kinematics import push_forward, stretches
+from coilset.model.physics.solid.points import MaterialPoints
 
 DOUBLE = np.array([1.0, 1, 1, 2, 2, 2])
 

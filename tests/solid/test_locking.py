@@ -5,10 +5,10 @@ import pytest
 from mpi4py import MPI
 from solid_laws import IdealPlastic
 
-from coilset.meshes.solid import SectionGrid, straight_wire
-from coilset.model.solid import forms
-from coilset.model.solid.heads import Motion
-from coilset.model.solid.problem import SolidProblem
+from coilset.meshes.solids.solid import SectionGrid, straight_wire
+from coilset.model.physics.solid import forms
+from coilset.model.physics.solid.heads import Motion
+from coilset.model.physics.solid.problem import SolidProblem
 from coilset.verification.solid_study.references import plastic_bending_moment
 
 d, R, L = 5.0, 2.5, 40.0

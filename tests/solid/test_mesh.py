@@ -4,9 +4,9 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
-from coilset.meshes.solid import Helix, SectionGrid, coil_section, straight_wire
-from coilset.model.base.errors import InputError
-from coilset.model.solid.configuration import Configuration
+from coilset.meshes.solids.solid import Helix, SectionGrid, coil_section, straight_wire
+from coilset.model.core.base.errors import InputError
+from coilset.model.physics.solid.configuration import Configuration
 
 
 def sizes(wire):

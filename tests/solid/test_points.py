@@ -3,8 +3,8 @@
 import numpy as np
 from solid_laws import IdealPlastic
 
-from coilset.model.material import library
-from coilset.model.solid.points import MaterialPoints
+from coilset.model.core.material import library
+from coilset.model.physics.solid.points import MaterialPoints
 
 
 def test_ideal_plastic_is_where_radial_return_goes():

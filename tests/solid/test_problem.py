@@ -5,18 +5,18 @@ import pytest
 from mpi4py import MPI
 from solid_laws import Elastic, IdealPlastic
 
-from coilset.meshes import solid
-from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
-from coilset.model.base.compat import to_ranks
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.equilibrium.newton import methods
-from coilset.model.equilibrium.settings import StepControl
-from coilset.model.material import library
-from coilset.model.solid.heads import Motion
-from coilset.model.solid.points import MaterialPoints
-from coilset.model.solid.problem import SolidProblem
-from coilset.model.solid.program import AxialProgram
-from coilset.model.solid.sampling import SectionSample, disk_grid
+from coilset.meshes.solids import solid
+from coilset.meshes.solids.solid import SectionGrid, coil_section, straight_wire
+from coilset.model.core.base.compat import to_ranks
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.equilibrium.newton import methods
+from coilset.model.core.equilibrium.settings import StepControl
+from coilset.model.core.material import library
+from coilset.model.physics.solid.heads import Motion
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.physics.solid.problem import SolidProblem
+from coilset.model.physics.solid.program import AxialProgram
+from coilset.model.physics.solid.sampling import SectionSample, disk_grid
 from coilset.verification.solid_study.references import nadai_torque
 
 d, R, L = 5.0, 2.5, 5.0

@@ -8,11 +8,11 @@ import pyvista
 from mpi4py import MPI
 from solid_laws import Elastic
 
-from coilset.meshes.solid import SectionGrid, coil_section
-from coilset.model.solid import output
-from coilset.model.solid.heads import Motion
-from coilset.model.solid.problem import SolidProblem
-from coilset.model.solid.sampling import SectionSample, disk_grid
+from coilset.meshes.solids.solid import SectionGrid, coil_section
+from coilset.model.physics.solid import output
+from coilset.model.physics.solid.heads import Motion
+from coilset.model.physics.solid.problem import SolidProblem
+from coilset.model.physics.solid.sampling import SectionSample, disk_grid
 from coilset.verification.solid_study import elastic, pressing, references, study
 from coilset.verification.solid_study.store import Store
 

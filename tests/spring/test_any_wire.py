@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.case import check, read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards.case_sheet import case_sheet
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import check, read_case
+from coilset.model.tools.standards.case_sheet import case_sheet
 
 SPRINGS = Path(__file__).parents[2] / "examples" / "springs"
 SMALL = ["mesh.elements_per_turn=8", "accuracy=none"]

@@ -5,9 +5,9 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.case import Case
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import Case
 from coilset.verification.spring_references.coil_by_coil import CoilByCoil
 from coilset.verification.spring_references.curved_rod import clamped_rate
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case.case import check
-from coilset.model.run.analysis import Analysis
-from coilset.model.slice.analysis import SliceAnalysis
-from coilset.model.summary.summary import summarise
-from coilset.model.summary.warnings import run_warnings
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.compose.warnings import run_warnings
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case.case import check
+from coilset.model.physics.slice.analysis import SliceAnalysis
 from coilset.verification.references.springback import Bar
 
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 20.0, "made_by": "coiling"}

@@ -2,8 +2,8 @@
 
 import pytest
 
-from coilset.model.case import check
-from coilset.model.case.targets import closing_force
+from coilset.model.core.case import check
+from coilset.model.core.case.targets import closing_force
 from coilset.verification.random_springs.press_one import press
 
 

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check, read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards import en13906
-from coilset.model.standards.case_sheet import case_sheet
-from coilset.model.standards.rows import sections
-from coilset.model.summary.summary import summarise
-from coilset.model.uniform_coil.estimate import estimate
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check, read_case
+from coilset.model.physics.uniform_coil.estimate import estimate
+from coilset.model.tools.sheet.rows import sections
+from coilset.model.tools.standards import en13906
+from coilset.model.tools.standards.case_sheet import case_sheet
 from coilset.verification.spring_references.coil_by_coil import shear_curve
 
 WIRE, MEAN, TURNS, TENSION = 3.0, 30.0, 8.0, 25.0

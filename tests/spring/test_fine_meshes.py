@@ -3,8 +3,8 @@
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import read_case
 
 PRESS = ["loading=[{to: {travel: 6}, steps: 3}]", "mesh.section.rule=abramowitz9", "accuracy=none"]
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case.case import check
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case.case import check
 from coilset.verification.cases.time.heat_along_wire import material
 from coilset.verification.study import Study
 

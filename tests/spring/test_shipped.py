@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.case import read_case
 from coilset.verification.spring_references.coil_by_coil import CoilByCoil
 from coilset.verification.spring_references.curved_rod import clamped_rate
 

@@ -7,13 +7,13 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.run.analysis import Analysis
-from coilset.model.section import surface
-from coilset.model.standards import en13906
-from coilset.model.standards.rate import OnPoint, tails_compliance
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.core.section import surface
+from coilset.model.tools.standards import en13906
+from coilset.model.tools.standards.rate import OnPoint, tails_compliance
 
 WIRE, MEAN, TURNS, TENSION = 3.0, 30.0, 4.0, 25.0
 MESH = {"elements_per_turn": 12, "section": {"radial": 4, "angular": 12}}

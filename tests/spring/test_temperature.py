@@ -5,9 +5,9 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
 
 COLD = {"elasticity": {"G": 80000.0, "nu": 0.3}, "isotropic": {"k0_squared": 1.2e5, "a1": 0.0, "a2": 0.0, "a3": 1.0}}
 HOT = {"elasticity": {"G": 70000.0, "nu": 0.3}, "isotropic": {"k0_squared": 0.5e5, "a1": 0.0, "a2": 0.0, "a3": 1.0}}

@@ -7,18 +7,18 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.case.case import check
-from coilset.model.figures.panels.characteristic import characteristic
-from coilset.model.material import library
-from coilset.model.report.answer import answer
-from coilset.model.results.quantities import quantities
-from coilset.model.results.records.labels import last_released
-from coilset.model.results.records.provenance import origin
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.run_files import run_of
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_files import run_of
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.core.case.case import check
+from coilset.model.core.material import library
+from coilset.model.core.results.quantities import quantities
+from coilset.model.core.results.records.labels import last_released
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.tools.figures.panels.characteristic import characteristic
+from coilset.model.tools.report.answer import answer
 
 HOLD = [{"to": {"travel": 10}, "steps": 1}, {"hold": {"hours": 1000}, "steps": 8}]
 SPRING = {

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError, SolveError
-from coilset.model.case import check
-from coilset.model.contact.base import TrialPositions
-from coilset.model.contact.curve import CentreLine
-from coilset.model.contact.hold import Guide
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards import en13906
-from coilset.model.standards.case_sheet import case_sheet
-from coilset.model.standards.rows import sections
-from coilset.model.summary.summary import summarise
-from coilset.model.summary.warnings import run_warnings
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.compose.warnings import run_warnings
+from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.case import check
+from coilset.model.core.contact.base import TrialPositions
+from coilset.model.core.contact.curve import CentreLine
+from coilset.model.physics.guides.hold import Guide
+from coilset.model.tools.sheet.rows import sections
+from coilset.model.tools.standards import en13906
+from coilset.model.tools.standards.case_sheet import case_sheet
 from coilset.scripts.terminal.progress import Lines
 from coilset.verification.references.bent_wire import BentWire
 

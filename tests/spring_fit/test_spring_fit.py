@@ -7,17 +7,18 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.material import library, programs
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
-from coilset.model.spring_fit import rods
-from coilset.model.spring_fit.fit import fit_springs
-from coilset.model.spring_fit.laws import TRIAL, Form
-from coilset.model.spring_fit.next_press import next_press
-from coilset.model.spring_fit.pressing import read_pressing
-from coilset.model.standards.case_warnings import case_warnings
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.core.material import library
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.tools.identification import programs
+from coilset.model.tools.spring_fit import rods
+from coilset.model.tools.spring_fit.fit import fit_springs
+from coilset.model.tools.spring_fit.laws import TRIAL, Form
+from coilset.model.tools.spring_fit.next_press import next_press
+from coilset.model.tools.spring_fit.pressing import read_pressing
+from coilset.model.tools.standards.case_warnings import case_warnings
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.springs import spring_fit as study
 from coilset.verification.references import heun

@@ -4,7 +4,7 @@ import numpy as np
 from catalogue import G
 from scipy.optimize import brentq
 
-from coilset.model.standards import en13906
+from coilset.model.tools.standards import en13906
 
 E, ν = 206000.0, 206000.0 / 163000.0 - 1
 

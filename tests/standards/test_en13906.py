@@ -7,10 +7,10 @@ import pytest
 from catalogue import CATALOGUE, G
 from derivations import E, closed_helix, haringx, helix_compliance, ν
 
-from coilset.model.case import check
-from coilset.model.standards import en13906
-from coilset.model.standards.buckling import critical_travel, seating_of
-from coilset.model.standards.rate import pitch_compliance
+from coilset.model.core.case import check
+from coilset.model.tools.standards import en13906
+from coilset.model.tools.standards.buckling import critical_travel, seating_of
+from coilset.model.tools.standards.rate import pitch_compliance
 
 
 def test_printed_sheet_of_helispring():

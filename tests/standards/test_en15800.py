@@ -3,7 +3,7 @@
 import pytest
 from catalogue import CATALOGUE, G
 
-from coilset.model.standards.en15800 import COIL, DIAMETERS, coil_diameter, force_tolerance, outside, tolerances
+from coilset.model.tools.standards.en15800 import COIL, DIAMETERS, coil_diameter, force_tolerance, outside, tolerances
 
 
 @pytest.mark.parametrize("printed", CATALOGUE, ids=lambda printed: printed.name)

@@ -11,10 +11,10 @@ from catalogue import CATALOGUE, G
 from derivations import E, closed_helix, half_wave, haringx, helix_compliance, polygon_length, torus_volume
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.rows import DERIVED, GIVEN, ONE, TWO, sections
-from coilset.model.standards.sheet import Sheet
-from coilset.model.standards.wires import wire
+from coilset.model.tools.sheet.rows import DERIVED, GIVEN, ONE, TWO, sections
+from coilset.model.tools.standards.cylinder import Cylinder
+from coilset.model.tools.standards.sheet import Sheet
+from coilset.model.tools.wires import wire
 from coilset.verification.one_section.slice_references import ring_sector
 
 PRINTED = next(one for one in CATALOGUE if one.name == "D-313J-02")

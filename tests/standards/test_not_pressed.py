@@ -10,18 +10,18 @@ import numpy as np
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.entry import check_entries
-from coilset.model.base.errors import InputError
-from coilset.model.case import UnloadedCase, check
-from coilset.model.case.material import case_law
-from coilset.model.report.document.diagrams import diagrams
-from coilset.model.run.load_history import LoadHistory
-from coilset.model.standards.buckling import buckling_travel
-from coilset.model.standards.case_sheet import case_sheet
-from coilset.model.standards.case_warnings import case_warnings, sheet_warnings
-from coilset.model.standards.from_results import Found
-from coilset.model.standards.rows import sections
-from coilset.model.standards.spring_warnings import spring_warnings
+from coilset.model.compose.load_history import LoadHistory
+from coilset.model.core.base.entry import check_entries
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import UnloadedCase, check
+from coilset.model.core.case.material import case_law
+from coilset.model.tools.document.diagrams import diagrams
+from coilset.model.tools.sheet.from_results import Found
+from coilset.model.tools.sheet.rows import sections
+from coilset.model.tools.standards.buckling import buckling_travel
+from coilset.model.tools.standards.case_sheet import case_sheet
+from coilset.model.tools.standards.case_warnings import case_warnings, sheet_warnings
+from coilset.model.tools.standards.spring_warnings import spring_warnings
 
 HOOK = {"shape": "german", "length": 18.6}
 PULLED = {

@@ -9,17 +9,18 @@ import pytest
 import xarray as xr
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.case.material import case_law
-from coilset.model.standards import en15800, from_results, goodman
-from coilset.model.standards.case_sheet import case_sheet
-from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.rows import sections
-from coilset.model.standards.sheet import Sheet
-from coilset.model.standards.wires import names, wire
-from coilset.model.standards.working_warnings import stress_warnings
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.core.case.material import case_law
+from coilset.model.tools.sheet import from_results
+from coilset.model.tools.sheet.rows import sections
+from coilset.model.tools.standards import en15800, goodman
+from coilset.model.tools.standards.case_sheet import case_sheet
+from coilset.model.tools.standards.case_warnings import case_warnings
+from coilset.model.tools.standards.cylinder import Cylinder
+from coilset.model.tools.standards.sheet import Sheet
+from coilset.model.tools.standards.working_warnings import stress_warnings
+from coilset.model.tools.wires import names, wire
 from coilset.scripts.commands.sheet import Options, list_wires, sheet
 
 # HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.case.material import case_law
-from coilset.model.material.point.points import initial_state, update
-from coilset.model.standards.wires import wire
-from coilset.model.standards.wires.law import wire_law
-from coilset.model.sweep.keys import Keys
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.core.case.material import case_law
+from coilset.model.core.material.point.points import initial_state, update
+from coilset.model.tools.sweep.keys import Keys
+from coilset.model.tools.wires import wire
+from coilset.model.tools.wires.law import wire_law
 
 
 def tensile_test(law, strain_end=0.04, steps=4000):

@@ -5,12 +5,12 @@ from itertools import pairwise
 
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.base.yaml import read_data
-from coilset.model.standards import goodman
-from coilset.model.standards.wires import library, names, wire
-from coilset.model.standards.wires.library import FOLDER
-from coilset.model.standards.wires.wire_file import WireFile, with_common
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.yaml import read_data
+from coilset.model.tools.standards import goodman
+from coilset.model.tools.wires import library, names, wire
+from coilset.model.tools.wires.library import FOLDER
+from coilset.model.tools.wires.wire_file import WireFile, with_common
 
 # Least strengths of EN 10270-1, N/mm², some rows of the tables of springcalc 0.1.24, which are rounded to 10
 TABLES = {

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.errors import InputError
-from coilset.model.base.warning import Warning
-from coilset.model.material.law.steel import STEEL, Elastic
-from coilset.model.standards import en13906
-from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.from_results import Found
-from coilset.model.standards.sheet import Sheet
-from coilset.model.standards.wires import wire
-from coilset.model.standards.working_warnings import gap_warnings, presetting_warning, stress_warnings
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.warning import Warning
+from coilset.model.core.material.law.steel import STEEL, Elastic
+from coilset.model.tools.sheet.from_results import Found
+from coilset.model.tools.standards import en13906
+from coilset.model.tools.standards.cylinder import Cylinder
+from coilset.model.tools.standards.sheet import Sheet
+from coilset.model.tools.standards.working_warnings import gap_warnings, presetting_warning, stress_warnings
+from coilset.model.tools.wires import wire
 
 SPEC = {
     "wire_diameter": 4.0,

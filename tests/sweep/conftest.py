@@ -5,7 +5,7 @@ import textwrap
 
 import pytest
 
-from coilset.model.sweep.engines.processes import Workers
+from coilset.model.tools.sweep.engines.processes import Workers
 
 CASE = """
     spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 1.5, pitch: 12.0}

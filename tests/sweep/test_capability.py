@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from coilset.model.case import read_case
-from coilset.model.results.limits import case_limits, judged, limit_warnings
-from coilset.model.results.records.record import Limit
-from coilset.model.standards import en13906, en15800
-from coilset.model.sweep.figures.capability import _capability, _controlled, _plain, lines
+from coilset.model.core.case import read_case
+from coilset.model.core.results.records.record import Limit
+from coilset.model.tools.standards import en13906, en15800
+from coilset.model.tools.standards.limits import case_limits, judged, limit_warnings
+from coilset.model.tools.sweep.figures.capability import _capability, _controlled, _plain, lines
 
 LIMIT = Limit("force_at_37_N", 240.0, 260.0, "given")
 
@@ -86,7 +86,7 @@ def test_limits_of_a_case_are_ranges_and_grades(example):
 
 @pytest.mark.parametrize(("name", "words"), [("force_at_30", "meant"), ("weight", "no number")])
 def test_a_limit_of_what_is_no_result_is_refused(example, name, words):
-    from coilset.model.base.errors import InputError
+    from coilset.model.core.base.errors import InputError
 
     case = read_case(example, ["working={lengths: [25]}", f"limits={{{name}: [1, 2]}}"])
     with pytest.raises(InputError, match=words):

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from coilset.model.base.entry import check_entries
-from coilset.model.base.errors import InputError
-from coilset.model.sweep.design import rows, unit_cube
-from coilset.model.sweep.figures.sensitivity import rank_correlation, sobol_indices
-from coilset.model.sweep.spec import Normal, SweepSpec
+from coilset.model.core.base.entry import check_entries
+from coilset.model.core.base.errors import InputError
+from coilset.model.tools.sweep.design import rows, unit_cube
+from coilset.model.tools.sweep.figures.sensitivity import rank_correlation, sobol_indices
+from coilset.model.tools.sweep.spec import Normal, SweepSpec
 
 
 def spec(**given):

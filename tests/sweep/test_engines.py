@@ -8,13 +8,13 @@ import pytest
 import xarray as xr
 
 from coilset.api import Study
-from coilset.model.base.errors import InputError
-from coilset.model.sweep import dataset, parquet
-from coilset.model.sweep.engines.dask import dask_pool
-from coilset.model.sweep.journal import Journal, Records
-from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.run import Limits, finished, missing, run
-from coilset.model.sweep.shards import WHOLE, Shard, duration
+from coilset.model.core.base.errors import InputError
+from coilset.model.tools.sweep import dataset, parquet
+from coilset.model.tools.sweep.engines.dask import dask_pool
+from coilset.model.tools.sweep.journal import Journal, Records
+from coilset.model.tools.sweep.plan import Plan
+from coilset.model.tools.sweep.run import Limits, finished, missing, run
+from coilset.model.tools.sweep.shards import WHOLE, Shard, duration
 from coilset.scripts.main import app
 
 UNIFORM = """
@@ -167,7 +167,7 @@ def test_engines_and_schedulers_belong_together(options, reason):
 
 def test_a_scheduler_that_does_not_answer_is_named(monkeypatch):
     pytest.importorskip("distributed")
-    monkeypatch.setattr("coilset.model.sweep.engines.dask.CONNECT_SECONDS", 1)
+    monkeypatch.setattr("coilset.model.tools.sweep.engines.dask.CONNECT_SECONDS", 1)
     with pytest.raises(InputError, match="no scheduler answers"), dask_pool("tcp://127.0.0.1:9"):
         pass
 

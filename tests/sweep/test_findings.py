@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coilset.model.results.records.units import unit_of, words_and_unit
-from coilset.model.sweep.figures import findings
+from coilset.model.core.results.records.units import unit_of, words_and_unit
+from coilset.model.tools.sweep.figures import findings
 
 
 def cases(values):

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.sweep.journal import Journal, read_records, whole_length
+from coilset.model.core.base.errors import InputError
+from coilset.model.tools.sweep.journal import Journal, read_records, whole_length
 
 
 def record(key):

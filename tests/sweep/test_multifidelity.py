@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy import stats
 
-from coilset.model.sweep.multifidelity import ControlVariate, as_rods, of_parquet
+from coilset.model.tools.sweep.multifidelity import ControlVariate, as_rods, of_parquet
 
 N, FEW = 4000, 60
 LIMIT = 11.5

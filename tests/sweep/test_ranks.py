@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.sweep.engines.mpi import mpi_pool
-from coilset.model.sweep.evaluate import evaluate
-from coilset.model.sweep.journal import Journal, read_records
-from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.run import missing, run
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.tools.sweep.engines.mpi import mpi_pool
+from coilset.model.tools.sweep.evaluate import evaluate
+from coilset.model.tools.sweep.journal import Journal, read_records
+from coilset.model.tools.sweep.plan import Plan
+from coilset.model.tools.sweep.run import missing, run
 
 pytestmark = pytest.mark.mpi
 COMM = MPI.COMM_WORLD

@@ -18,21 +18,21 @@ import xarray as xr
 from mpi4py import MPI
 from typer.testing import CliRunner
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.material.library import FOLDER
-from coilset.model.results.records.units import words_and_unit
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
-from coilset.model.sweep import dataset
-from coilset.model.sweep.engines import processes
-from coilset.model.sweep.engines.processes import Workers
-from coilset.model.sweep.evaluate import evaluate
-from coilset.model.sweep.figures.figures import draw
-from coilset.model.sweep.journal import Journal, read_records
-from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.run import finished, missing, run
-from coilset.model.sweep.spec import RESPONSES
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.core.material.library import FOLDER
+from coilset.model.core.results.records.units import words_and_unit
+from coilset.model.tools.sweep import dataset
+from coilset.model.tools.sweep.engines import processes
+from coilset.model.tools.sweep.engines.processes import Workers
+from coilset.model.tools.sweep.evaluate import evaluate
+from coilset.model.tools.sweep.figures.figures import draw
+from coilset.model.tools.sweep.journal import Journal, read_records
+from coilset.model.tools.sweep.plan import Plan
+from coilset.model.tools.sweep.run import finished, missing, run
+from coilset.model.tools.sweep.spec import RESPONSES
 from coilset.scripts.main import app
 from coilset.scripts.terminal.log import only_run
 
@@ -435,7 +435,7 @@ def test_kept_keys_count_until_plan_material_or_version_change(write_sweep, tmp_
     assert set(changed.keys).isdisjoint(first.keys)
     assert changed.keys == Plan(path).keys
     (tmp_path / "own.yaml").write_text(ck15)
-    monkeypatch.setattr("coilset.model.sweep.keys.__version__", "0.0.1")
+    monkeypatch.setattr("coilset.model.tools.sweep.keys.__version__", "0.0.1")
     assert set(Plan(path, kept).keys).isdisjoint(first.keys)
     kept.write_bytes(b"torn")
     assert len(Plan(path, kept)) == 2
@@ -458,7 +458,7 @@ def test_a_material_file_that_changes_during_the_sweep_gives_no_case_of_before(w
 def test_another_version_makes_new_cases(write_sweep, monkeypatch):
     text = "vary: {spring.wire_diameter: [5.0]}"
     first = Plan(write_sweep(text)).keys
-    monkeypatch.setattr("coilset.model.sweep.keys.__version__", "0.0.1")
+    monkeypatch.setattr("coilset.model.tools.sweep.keys.__version__", "0.0.1")
     assert Plan(write_sweep(text)).keys != first
 
 

@@ -5,11 +5,11 @@ import json
 
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import read_case
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.solid.points import MaterialPoints
-from coilset.model.turn.analysis import TurnAnalysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import read_case
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.tools.studies.turn import TurnAnalysis
 from coilset.scripts.commands.solid import solid_case
 from coilset.scripts.interrupt import Interrupt
 

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from coilset.model.base.errors import SolveError
+from coilset.model.core.base.errors import SolveError
 from coilset.scripts.commands.verify import verify
 from coilset.verification import registry
 from coilset.verification.cases.contact import force_centre, two_circles

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 from coilset.verification.comparison import Compared, Comparison, compare, figure
 
 CASE = {

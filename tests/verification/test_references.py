@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.model.material import library
+from coilset.model.core.material import library
 from coilset.verification.references import creeping_ring, relaxing_bar
 from coilset.verification.references.elastica import cantilever
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod

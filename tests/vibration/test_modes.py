@@ -5,17 +5,17 @@ import re
 import numpy as np
 import pytest
 
-from coilset.model.base.errors import InputError
-from coilset.model.case.case import check
-from coilset.model.contact.base import Contribution
-from coilset.model.equilibrium.system.load import Load
-from coilset.model.material import library
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards.buckling import critical_travel
-from coilset.model.standards.en13906 import natural_frequency
-from coilset.model.vibration.loaded import _gone_on, after_run, phase_to
-from coilset.model.vibration.mass import TONNE
-from coilset.model.vibration.modes import _glued, natural_modes
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case.case import check
+from coilset.model.core.contact.base import Contribution
+from coilset.model.core.equilibrium.system.load import Load
+from coilset.model.core.material import library
+from coilset.model.physics.vibration.mass import TONNE
+from coilset.model.physics.vibration.modes import _glued, natural_modes
+from coilset.model.tools.standards.buckling import critical_travel
+from coilset.model.tools.standards.en13906 import natural_frequency
+from coilset.model.tools.studies.loaded_spring import _gone_on, after_run, phase_to
 from coilset.verification.chain import ALL, X, chain, elastic, straight
 from coilset.verification.spring_references.vibrating_helix import HelicalRod
 

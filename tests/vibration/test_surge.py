@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from coilset.model.base.errors import InputError
-from coilset.model.case.case import check
-from coilset.model.run.analysis import Analysis
-from coilset.model.standards.en13906 import natural_frequency
-from coilset.model.vibration.driven import driven, surge
-from coilset.model.vibration.lift import read_lift, valve_lift
-from coilset.model.vibration.mass import TONNE
-from coilset.model.vibration.modes import natural_modes
-from coilset.model.vibration.surge import Motion
-from coilset.model.vibration.surge_output import draw_surge, write_surge
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case.case import check
+from coilset.model.physics.vibration.driven import driven, surge
+from coilset.model.physics.vibration.lift import read_lift, valve_lift
+from coilset.model.physics.vibration.mass import TONNE
+from coilset.model.physics.vibration.modes import natural_modes
+from coilset.model.physics.vibration.surge import Motion
+from coilset.model.tools.standards.en13906 import natural_frequency
+from coilset.model.tools.studies.surge_output import draw_surge, write_surge
 from coilset.verification.chain import ALL, ROTATION_X, X, chain, elastic, straight
 
 E, NU, DENSITY = 206e3, 0.3, 7.85e-6

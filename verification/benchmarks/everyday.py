@@ -13,8 +13,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.run.examples import EXAMPLES
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.errors import CoilsetError, InputError
 
 REPEATS = 5
 THIS = Path(__file__).resolve().parents[2]

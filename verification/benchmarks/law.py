@@ -16,9 +16,9 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.material.point import points
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.material.point import points
 from coilset.verification.references import heun
 
 POINTS = 4000

@@ -18,15 +18,15 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.runtime.caches import load_without_compiler
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.runtime.caches import load_without_compiler
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 
 if TYPE_CHECKING:  # at run time their import is measured
     from mpi4py import MPI
 
-    from coilset.model.case import Case
-    from coilset.model.run.analysis import Analysis
+    from coilset.model.compose.analysis import Analysis
+    from coilset.model.core.case import Case
 
 TURNS = 2.5  # of the example's spring
 MOST_TURNS = 256  # of springs whose coils touch: a thousand do not come to block in one step
@@ -76,14 +76,14 @@ class Logged:
 
 def read_example(settings: Iterable[str] = ()) -> "Case":
     """The example's Case, with 4 x 12 points in a section."""
-    from coilset.model.case import read_case
+    from coilset.model.core.case import read_case
 
     return read_case(EXAMPLES / "ck15_presetting.yaml", [*SAME, *settings])
 
 
 def build(watch: Stopwatch, case: "Case", comm: "MPI.Comm") -> "Analysis":
     """An Analysis whose stages are watched."""
-    from coilset.model.run.analysis import Analysis
+    from coilset.model.compose.analysis import Analysis
 
     with watch.stage("set-up"):
         analysis = Analysis(case, comm)
@@ -93,7 +93,7 @@ def build(watch: Stopwatch, case: "Case", comm: "MPI.Comm") -> "Analysis":
 
 def watch_meshing() -> Stopwatch:
     """The Stopwatch whose stage `mesh` is what the analysis has made in `meshes`."""
-    from coilset.model.run import build as module
+    from coilset.model.compose import build as module
 
     watch = Stopwatch()
     for function in ("line_mesh", "section_placement"):
@@ -113,7 +113,7 @@ def example(repeats: int = 5) -> dict[str, Any]:
     with start.stage("import"):
         from mpi4py import MPI
 
-        import coilset.model.run.analysis  # noqa: F401
+        import coilset.model.compose.analysis  # noqa: F401
     watch, runs = watch_meshing(), []
     logged = Logged(watch)
     for _ in range(repeats + 1):
@@ -149,10 +149,10 @@ def pair(watch: Stopwatch, stage: str) -> list[float]:
 
 def write(watch: Stopwatch, analysis: "Analysis") -> None:
     """Everything that `coilset solve` writes, into a folder that is thrown away."""
-    from coilset.model.figures.pictures import PARTS
-    from coilset.model.results.records.provenance import origin
-    from coilset.model.summary.run_files import write_run
-    from coilset.model.summary.summary import summarise
+    from coilset.model.compose.run_files import write_run
+    from coilset.model.compose.summary import summarise
+    from coilset.model.core.results.records.provenance import origin
+    from coilset.model.tools.figures.pictures import PARTS
 
     records, made_with = (analysis.setup, analysis.result), origin(analysis.case)
     with tempfile.TemporaryDirectory() as folder:

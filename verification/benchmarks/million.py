@@ -15,11 +15,11 @@ from pathlib import Path
 
 import yaml
 
-from coilset.model.base.errors import CoilsetError, InputError
-from coilset.model.results.files.folder import whole
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.runtime.processes import end_with_parent
-from coilset.model.sweep.journal import read_records
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.errors import CoilsetError, InputError
+from coilset.model.core.results.files.folder import whole
+from coilset.model.core.runtime.processes import end_with_parent
+from coilset.model.tools.sweep.journal import read_records
 
 UNIFORM, RODS = 1_000_000, 20_000
 KILLED_AT = (0.25, 0.5, 0.75)  # shares of all records at which the sweep is killed

@@ -5,8 +5,8 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.runtime.processes import end_with_parent
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.runtime.processes import end_with_parent
 
 
 def read_json(command: Sequence[str], name: str, environment: Mapping[str, str] | None = None, text: str = "") -> Any:

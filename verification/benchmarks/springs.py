@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.runtime.processes import end_with_parent
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.runtime.processes import end_with_parent
 from coilset.verification.random_springs import press_one
 from coilset.verification.random_springs.springs import family, features, random_spring
 

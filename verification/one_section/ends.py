@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from coilset.model.material import library
-from coilset.model.section.rules import polar
-from coilset.model.uniform_coil import rod as uniform
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.uniform_coil import rod as uniform
 from coilset.verification.solid_study import pressing
 from coilset.verification.solid_study.pressing import FINE, WIRE, PressedSection
 from coilset.verification.solid_study.study import diameter

@@ -3,10 +3,10 @@
 import numpy as np
 
 from coilset.meshes.springs.placement import straight
-from coilset.model.material.law.law import Law
-from coilset.model.section.kinds import make_sections
-from coilset.model.section.rules import DiskRule, polar
-from coilset.model.section.surface import component, nominal_shear
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.kinds import make_sections
+from coilset.model.core.section.rules import DiskRule, polar
+from coilset.model.core.section.surface import component, nominal_shear
 
 WIRE = 5.0  # mm
 

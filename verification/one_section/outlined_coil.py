@@ -1,14 +1,14 @@
-"""A uniform coil of any wire: the rod's section in the kinematics of `coilset.model.uniform_coil.rod`, no mesh."""
+"""A uniform coil of any wire: the rod's section in the kinematics of `physics/uniform_coil/rod.py`, no mesh."""
 
 import numpy as np
 
 from coilset.meshes.springs.placement import straight
-from coilset.model.base.errors import SolveError
-from coilset.model.material.law.law import Law
-from coilset.model.section.kinds import make_sections
-from coilset.model.section.rules import DiskRule
-from coilset.model.section.surface import component
-from coilset.model.uniform_coil.section import RISE, Coil, derivatives, strains
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.kinds import make_sections
+from coilset.model.core.section.rules import DiskRule
+from coilset.model.core.section.surface import component
+from coilset.model.physics.uniform_coil.section import RISE, Coil, derivatives, strains
 
 STRAINS = np.array([0, 2, 3, 5])  # Γ₁, Γ₃, K₁, K₃ among ε, γ12, γ13, φ′, κ2, κ3
 FREE = slice(0, 2)  # R̄ and ϑ

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.meshes.section import SectionMesh, section_mesh
-from coilset.meshes.section_shapes import Outline, round_wire
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.slice.analysis import ACROSS, INSIDE
-from coilset.model.slice.problem import SliceProblem
-from coilset.model.slice.slice import Coil, Slice
-from coilset.model.slice.watch import Watch
+from coilset.meshes.sections.mesh import SectionMesh, section_mesh
+from coilset.meshes.sections.shapes import Outline, round_wire
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.physics.slice.analysis import ACROSS, INSIDE
+from coilset.model.physics.slice.problem import SliceProblem
+from coilset.model.physics.slice.slice import Coil, Slice
+from coilset.model.physics.slice.watch import Watch
 
 WIRE = 5.0  # mm
 

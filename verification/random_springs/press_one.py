@@ -12,7 +12,7 @@ import sys
 import time
 from typing import Any
 
-from coilset.model.base.errors import InputError, SolveError
+from coilset.model.core.base.errors import InputError, SolveError
 
 
 def press(data: dict[str, Any], limit: float) -> dict[str, Any]:
@@ -28,8 +28,8 @@ def press(data: dict[str, Any], limit: float) -> dict[str, Any]:
     """
     from mpi4py import MPI
 
-    from coilset.model.case import check
-    from coilset.model.run.analysis import Analysis
+    from coilset.model.compose.analysis import Analysis
+    from coilset.model.core.case import check
 
     def give_up(*_: object) -> None:
         raise KeyboardInterrupt  # as by hand: the analysis lets no other error through PETSc unchanged
@@ -61,7 +61,7 @@ def press(data: dict[str, Any], limit: float) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    from coilset.model.runtime.caches import load_without_compiler
+    from coilset.model.core.runtime.caches import load_without_compiler
 
     load_without_compiler()
     answers = sys.stdout

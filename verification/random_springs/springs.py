@@ -10,12 +10,12 @@ import random
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
-from coilset.model.base.errors import InputError
-from coilset.model.case import check
-from coilset.model.case.material import case_law
-from coilset.model.case.targets import check_targets
-from coilset.model.material import library
-from coilset.model.standards.wires import names as wire_names
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.case import check
+from coilset.model.core.case.material import case_law
+from coilset.model.core.case.targets import check_targets
+from coilset.model.core.material import library
+from coilset.model.tools.wires import names as wire_names
 
 FAMILIES = ("cylinder", "cone", "barrel", "hourglass", "double cone", "variable pitch", "variable wire")
 WIRE, INDEX, TURNS = (0.3, 14.0), (3.0, 20.0), (2.0, 12.0)  # mm, D/d, turns

@@ -17,11 +17,11 @@ from typing import Any, NamedTuple
 import yaml
 from mpi4py import MPI
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.case import check
-from coilset.model.case.material import case_law
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.case import check
+from coilset.model.core.case.material import case_law
 from coilset.verification.random_springs.springs import random_spring
 
 DATA = Path(__file__).with_suffix(".yaml")

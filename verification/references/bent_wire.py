@@ -6,8 +6,8 @@ fibre follows the tensile curve of the law, alike in compression, and the spring
 
 import numpy as np
 
-from coilset.model.material import programs
-from coilset.model.material.law.law import Law
+from coilset.model.core.material.law.law import Law
+from coilset.model.tools.identification import programs
 
 REACH, INCREMENTS = 0.05, 500  # strain of the tensile curve
 SLICES = 2000  # of the section's half height

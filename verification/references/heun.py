@@ -16,8 +16,7 @@ from functools import partial
 
 import numpy as np
 
-from coilset.model.material import programs
-from coilset.model.material.law.functions import (
+from coilset.model.core.material.law.functions import (
     CHANGE,
     HEATING,
     N_ROWS,
@@ -30,12 +29,13 @@ from coilset.model.material.law.functions import (
     row_functions,
     table_place,
 )
-from coilset.model.material.law.law import Law
-from coilset.model.material.point.local import TOO_HOT, yield_crossing
-from coilset.model.material.point.points import refuse
-from coilset.model.material.point.points import update as update_points
-from coilset.model.material.programs import History, Program
-from coilset.model.runtime.kernels import KERNEL, njit
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.material.point.local import TOO_HOT, yield_crossing
+from coilset.model.core.material.point.points import refuse
+from coilset.model.core.material.point.points import update as update_points
+from coilset.model.core.runtime.kernels import KERNEL, njit
+from coilset.model.tools.identification import programs
+from coilset.model.tools.identification.programs import History, Program
 
 MAX_SUBSTEPS = 20000
 MAX_CUTS = 8
@@ -386,7 +386,7 @@ def update(
     temperature: float | tuple[float, float] | None = None,
     tolerance: float | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Advance points by strain increments, as `coilset.model.material.point.points.update`.
+    """Advance points by strain increments, as `coilset.model.core.material.point.points.update`.
 
     Args:
         law, state, increments, temperature: as there; k², ζ, κ, heating and spin.

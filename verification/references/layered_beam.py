@@ -18,7 +18,7 @@ used.
 
 import numpy as np
 
-from coilset.model.material.law.law import Law
+from coilset.model.core.material.law.law import Law
 
 SECTIONS, LAYERS = 10, 16
 SUB_STEPS = 12  # of a step

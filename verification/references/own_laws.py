@@ -10,7 +10,7 @@ follows from |n|² = k² by the implicit function theorem, including the fractio
 
 import numpy as np
 
-from coilset.model.runtime.kernels import njit
+from coilset.model.core.runtime.kernels import njit
 
 COMPILED = njit(cache=True, error_model="numpy")
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from coilset.model.material.law.law import Law
+from coilset.model.core.material.law.law import Law
 
 UNIT = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 WEIGHT = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # of components 11, 22, 33, 12, 13, 23 in a:b

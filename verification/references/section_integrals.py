@@ -7,7 +7,7 @@ Nothing here knows of section rules, return maps or rods. Of the program only th
 import numpy as np
 from scipy.integrate import quad, solve_ivp
 
-from coilset.model.material.law.law import Law
+from coilset.model.core.material.law.law import Law
 
 ACCURACY = {"method": "DOP853", "rtol": 1e-8, "atol": 1e-8}
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from mpi4py import MPI
 from rich.console import Console
 
-from coilset.model.figures.png import save
+from coilset.model.tools.figures.png import save
 from coilset.verification.solid_study import figures, study
 from coilset.verification.solid_study.store import Store
 

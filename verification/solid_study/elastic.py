@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.solid import SectionGrid, coil_section
-from coilset.model.material import library
-from coilset.model.solid.heads import Motion
-from coilset.model.solid.points import MaterialPoints
-from coilset.model.solid.problem import SolidProblem
-from coilset.model.solid.sampling import SectionSample
+from coilset.meshes.solids.solid import SectionGrid, coil_section
+from coilset.model.core.material import library
+from coilset.model.physics.solid.heads import Motion
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.physics.solid.problem import SolidProblem
+from coilset.model.physics.solid.sampling import SectionSample
 from coilset.verification.solid_study import references
 
 WIRE = 5.0  # mm

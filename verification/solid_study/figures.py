@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import TriContourSet
 
-from coilset.model.base.style import DIVERGING, STYLE, levels
+from coilset.model.core.base.style import DIVERGING, STYLE, levels
 from coilset.verification.solid_study import pressing, references, study
 from coilset.verification.solid_study.pressing import PressedSection
 

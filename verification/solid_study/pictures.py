@@ -11,9 +11,9 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from coilset.model.figures import display
-from coilset.model.solid import output
-from coilset.model.solid.problem import SolidProblem
+from coilset.model.physics.solid import output
+from coilset.model.physics.solid.problem import SolidProblem
+from coilset.model.tools.figures import display
 from coilset.verification.solid_study.pressing import PressedSection, run_solid
 
 CASE = PressedSection()

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.solid import SectionGrid, coil_section
-from coilset.model.case import Case
-from coilset.model.material import library
-from coilset.model.results.records.record import Snapshot
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.surface import component
-from coilset.model.solid.points import MaterialPoints
-from coilset.model.solid.problem import SolidProblem
-from coilset.model.solid.program import AxialProgram, Station
-from coilset.model.solid.sampling import SectionSample, disk_grid
+from coilset.meshes.solids.solid import SectionGrid, coil_section
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.case import Case
+from coilset.model.core.material import library
+from coilset.model.core.results.records.record import Snapshot
+from coilset.model.core.section.surface import component
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.physics.solid.problem import SolidProblem
+from coilset.model.physics.solid.program import AxialProgram, Station
+from coilset.model.physics.solid.sampling import SectionSample, disk_grid
 
 WIRE = 5.0  # mm
 ROD_ELEMENTS = 33  # an odd number, so that an element lies in the middle
@@ -88,7 +88,7 @@ def run_solid(
     Args:
         case: PressedSection.
         comm: MPI communicator.
-        solver: see `coilset.model.equilibrium.newton.methods`.
+        solver: see `coilset.model.core.equilibrium.newton.methods`.
         report: called with a line after every station.
         on_full, on_end: called with the SolidProblem at full travel and after release, for pictures.
 

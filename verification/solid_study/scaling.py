@@ -19,11 +19,11 @@ from typing import Any
 
 from mpi4py import MPI
 
-from coilset.meshes.solid import SectionGrid, coil_section
-from coilset.model.material import library
-from coilset.model.solid.heads import Motion
-from coilset.model.solid.points import MaterialPoints
-from coilset.model.solid.problem import SolidProblem
+from coilset.meshes.solids.solid import SectionGrid, coil_section
+from coilset.model.core.material import library
+from coilset.model.physics.solid.heads import Motion
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.physics.solid.problem import SolidProblem
 from coilset.verification.solid_study.pressing import WIRE, PressedSection
 from coilset.verification.solid_study.store import Store
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from coilset.model.results.files.folder import whole
+from coilset.model.core.results.files.folder import whole
 
 
 class Store:

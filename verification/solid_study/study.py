@@ -51,7 +51,7 @@ def run(store: Store, cases: Cases = STANDARD, solver: str = "auto") -> Found:
     Args:
         store: Store.
         cases: STANDARD, or WHOLE.
-        solver: see `coilset.model.equilibrium.newton.methods`.
+        solver: see `coilset.model.core.equilibrium.newton.methods`.
 
     Returns:
         Found.

@@ -8,8 +8,8 @@ import numpy as np
 
 from coilset.meshes.springs.ends import touching_pitch
 from coilset.meshes.springs.spring import Spring
-from coilset.model.material import programs
-from coilset.model.material.law.law import Law
+from coilset.model.core.material.law.law import Law
+from coilset.model.tools.identification import programs
 from coilset.verification.spring_references.curved_rod import _points
 
 REACH, INCREMENTS = 0.05, 500  # shear strain of the flow curve

@@ -16,10 +16,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import check
-from coilset.model.figures.png import save
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import check
+from coilset.model.tools.figures.png import save
 from coilset.verification.spring_references.curved_rod import torsion_characteristic
 
 STEPS = 26

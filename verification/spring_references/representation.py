@@ -17,20 +17,20 @@ from coilset.meshes.line import line_mesh
 from coilset.meshes.springs.placement import section_placement
 from coilset.meshes.springs.shapes import Barrel
 from coilset.meshes.springs.spring import Spring, SpringSpec
-from coilset.model.base.style import STYLE
-from coilset.model.equilibrium.newton.methods import rod_method
-from coilset.model.equilibrium.newton.newton import Newton
-from coilset.model.equilibrium.path.continuation import Continuation
-from coilset.model.equilibrium.system.heads import Heads, Holding
-from coilset.model.equilibrium.system.layout import SEATS, LineLayout
-from coilset.model.equilibrium.system.system import System
-from coilset.model.figures.png import save
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.rod.elements import THESIS
-from coilset.model.rod.rod import Rod
-from coilset.model.rotations.triads import chord_triads
-from coilset.model.section.rules import polar
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.equilibrium.newton.methods import rod_method
+from coilset.model.core.equilibrium.newton.newton import Newton
+from coilset.model.core.equilibrium.path.continuation import Continuation
+from coilset.model.core.equilibrium.system.heads import Heads, Holding
+from coilset.model.core.equilibrium.system.layout import SEATS, LineLayout
+from coilset.model.core.equilibrium.system.system import System
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.rod.elements import THESIS
+from coilset.model.core.rod.rod import Rod
+from coilset.model.core.rotations.triads import chord_triads
+from coilset.model.core.section.rules import polar
+from coilset.model.tools.figures.png import save
 from coilset.verification.spring_references.curved_rod import clamped_rate
 
 TRAVEL = 1e-4  # of the free length, in both directions

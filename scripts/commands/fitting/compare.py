@@ -5,8 +5,8 @@ from pathlib import Path
 
 from rich.table import Table
 
-from coilset.model.figures.png import save
-from coilset.model.results.files.folder import make
+from coilset.model.core.results.files.folder import make
+from coilset.model.tools.figures.png import save
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
 from coilset.verification.comparison import compare as run_and_compare

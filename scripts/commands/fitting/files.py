@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 from coilset.scripts.terminal.target import UNFIT, results_folder
 
 if TYPE_CHECKING:  # commands load what they need
@@ -19,7 +19,7 @@ def files_to_write(out: str | None, name: str, force: bool, *files: str) -> list
     Raises:
         InputError: one is there, and not to be overwritten, or the name would lead to another folder.
     """
-    from coilset.model.results.files.folder import refuse_to_replace
+    from coilset.model.core.results.files.folder import refuse_to_replace
 
     if leading := next((file for file in files if UNFIT.search(file)), ""):
         raise InputError(f"'{leading}' is no name of a file; a material's name has no /", "--name")
@@ -33,7 +33,7 @@ def write_material(file: Path, content: dict[str, Any], console: "Console") -> N
     """Write a material file."""
     import yaml
 
-    from coilset.model.results.files.folder import make, whole
+    from coilset.model.core.results.files.folder import make, whole
 
     make(file.parent)
     with whole(file) as path:
@@ -43,8 +43,8 @@ def write_material(file: Path, content: dict[str, Any], console: "Console") -> N
 
 def write_picture(figure: "Figure", path: Path, console: "Console") -> None:
     """Write a figure as PNG."""
-    from coilset.model.figures.png import save
-    from coilset.model.results.files.folder import make
+    from coilset.model.core.results.files.folder import make
+    from coilset.model.tools.figures.png import save
 
     make(path.parent)
     save(figure, path)

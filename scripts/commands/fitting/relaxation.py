@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 from coilset.scripts.commands.fitting.springs import with_cases
 
 if TYPE_CHECKING:
-    from coilset.model.material.identification.creep_fit import CreepFit
-    from coilset.model.material.identification.relaxation_tests import Readings
+    from coilset.model.tools.identification.creep_fit import CreepFit
+    from coilset.model.tools.identification.relaxation_tests import Readings
 
 
 def read(paths: Sequence[str], points: bool) -> "tuple[Readings, ...]":
@@ -18,10 +18,10 @@ def read(paths: Sequence[str], points: bool) -> "tuple[Readings, ...]":
     Raises:
         InputError: a file is wrong.
     """
-    from coilset.model.case import UnloadedCase, read_case
-    from coilset.model.material.identification.relaxation_tests import read_relaxation
-    from coilset.model.standards import en13906
-    from coilset.model.uniform_coil.equivalent import coil
+    from coilset.model.core.case import UnloadedCase, read_case
+    from coilset.model.physics.uniform_coil.equivalent import coil
+    from coilset.model.tools.identification.relaxation_tests import read_relaxation
+    from coilset.model.tools.standards import en13906
 
     found = []
     for path, case in with_cases(paths):

@@ -4,14 +4,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coilset.model.base.errors import InputError
+from coilset.model.core.base.errors import InputError
 from coilset.scripts.commands.fitting.files import files_to_write, write_material, write_picture
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target
 
 if TYPE_CHECKING:
-    from coilset.model.spring_fit.pressing import Pressing
+    from coilset.model.tools.spring_fit.pressing import Pressing
 
 FLAG, NAME = "--spring", "fit-springs"
 DATA = typer.Argument(
@@ -46,10 +46,10 @@ def fit_springs(
     """Identify yield, hardening and G of a wire from springs that are pressed and released; also `fit --spring`."""
     from rich.table import Table
 
-    from coilset.model.spring_fit.figure import figure
-    from coilset.model.spring_fit.fit import fit_springs as fit
-    from coilset.model.spring_fit.model import TESTER, Errors
-    from coilset.model.spring_fit.next_press import next_press, words
+    from coilset.model.tools.spring_fit.figure import figure
+    from coilset.model.tools.spring_fit.fit import fit_springs as fit
+    from coilset.model.tools.spring_fit.model import TESTER, Errors
+    from coilset.model.tools.spring_fit.next_press import next_press, words
     from coilset.scripts.terminal.console import Console
 
     announce_compiling()
@@ -84,7 +84,7 @@ def known_values(texts: list[str]) -> dict[str, float]:
     Raises:
         InputError: one that is not of this form.
     """
-    from coilset.model.base.columns import number
+    from coilset.model.core.base.columns import number
 
     found = {}
     for text in texts:
@@ -97,8 +97,8 @@ def known_values(texts: list[str]) -> dict[str, float]:
 
 def _read(paths: list[str]) -> "list[Pressing]":
     """The presses of the files, each with the case that follows it."""
-    from coilset.model.case import UnloadedCase, read_case
-    from coilset.model.spring_fit.pressing import read_pressing
+    from coilset.model.core.case import UnloadedCase, read_case
+    from coilset.model.tools.spring_fit.pressing import read_pressing
 
     found = []
     for path, case in with_cases(paths):

@@ -18,11 +18,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import read_case
 from coilset.verification.study import Study
 
 SPRINGS = {"cylinder": "block", "cone": "block", "barrel": "{height: 30.0}"}  # and where they are compressed to

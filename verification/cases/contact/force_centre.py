@@ -27,13 +27,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import check
-from coilset.model.figures.panels.seats import contact
-from coilset.model.figures.png import draw
-from coilset.model.results.records.provenance import origin
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.run_files import run_of
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_files import run_of
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import check
+from coilset.model.core.results.records.provenance import origin
+from coilset.model.tools.figures.panels.seats import contact
+from coilset.model.tools.figures.png import draw
 from coilset.verification.study import Study
 
 FAST = True

@@ -26,11 +26,11 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import beta
 
-from coilset.model.base.style import STYLE
-from coilset.model.contact.base import LEVEL, SEAT_DOFS
-from coilset.model.contact.seat import Seat
-from coilset.model.material import library
-from coilset.model.section.rules import polar
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.contact.base import LEVEL, SEAT_DOFS
+from coilset.model.core.contact.seat import Seat
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import polar
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
 from coilset.verification.wire_points import wire_points

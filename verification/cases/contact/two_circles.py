@@ -13,8 +13,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Z, chain, drive, straight
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study

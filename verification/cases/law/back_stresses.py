@@ -14,8 +14,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
 from coilset.verification.cases.solid.slice_uniform import INDICES, rod_pressed
 from coilset.verification.one_section.slice_runs import pressed
 from coilset.verification.solid_study.pressing import PressedSection

@@ -11,9 +11,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.point import points
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.point import points
 from coilset.verification.references import heun
 from coilset.verification.study import Study
 

@@ -14,10 +14,10 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library, programs
-from coilset.model.material.identification import fit
-from coilset.model.material.identification.experiments import Test
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.tools.identification import fit, programs
+from coilset.model.tools.identification.experiments import Test
 from coilset.verification.references import heun
 from coilset.verification.study import Study
 

@@ -15,10 +15,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.section.rules import DiskRule, polar
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.rules import DiskRule, polar
 from coilset.verification.chain import ALL, ROTATION_X, X, chain, drive, straight
 from coilset.verification.references.section_integrals import plastic_path, tube_shear
 from coilset.verification.study import Study

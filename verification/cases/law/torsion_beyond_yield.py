@@ -15,10 +15,10 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.section.rules import polar
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.rules import polar
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Y, Z, chain, drive, straight
 from coilset.verification.references.section_integrals import nadai_torque, shear_curve, torque
 from coilset.verification.study import Study

@@ -22,14 +22,14 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.style import STYLE
-from coilset.model.case.case import check
-from coilset.model.manufacture.coiling import coil
-from coilset.model.material import library
-from coilset.model.material.point.points import initial_state
-from coilset.model.results.records.record import Snapshot
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.rules import polar
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case.case import check
+from coilset.model.core.material import library
+from coilset.model.core.material.point.points import initial_state
+from coilset.model.core.results.records.record import Snapshot
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.manufacture.coiling import coil
 from coilset.verification.references.springback import Bar
 from coilset.verification.study import Study
 

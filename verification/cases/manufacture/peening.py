@@ -22,13 +22,13 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 from scipy.integrate import quad
 
-from coilset.model.base.style import STYLE
-from coilset.model.case.case import check
-from coilset.model.manufacture.peening import Layer, peen
-from coilset.model.material import library
-from coilset.model.material.point.points import initial_state
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.rules import polar
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case.case import check
+from coilset.model.core.material import library
+from coilset.model.core.material.point.points import initial_state
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.manufacture.peening import Layer, peen
 from coilset.verification.study import Study
 
 FAST = True

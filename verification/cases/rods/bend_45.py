@@ -18,8 +18,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
 from coilset.verification.chain import Z, chain, elastic
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod
 from coilset.verification.study import Study

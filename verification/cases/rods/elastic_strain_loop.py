@@ -10,7 +10,7 @@ shear angle γ they are
 
 so that ½ E ε γ of shear remains to first order, 21.0 MPa here where σ rose to 2,100 MPa. The program's stress is a
 function of the elastic strain, namely the one that the closed form gives after stretch and twist
-(`model/material/point/spin.py`): both components must agree with the closed form as long as the bar is only stretched
+(`back_stresses/spin.py`): both components must agree with the closed form as long as the bar is only stretched
 and then twisted, and nothing may remain.
 
 Tolerance: 1e-6 MPa, in any number of steps; the maximum found is 3e-10.
@@ -20,10 +20,10 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.section.rules import DiskRule
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.rules import DiskRule
 from coilset.verification.chain import ALL, ROTATION_X, X, chain, drive, straight
 from coilset.verification.study import Study
 

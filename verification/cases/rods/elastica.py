@@ -14,9 +14,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
 from coilset.verification.chain import Y, chain, straight
 from coilset.verification.references.elastica import cantilever
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod

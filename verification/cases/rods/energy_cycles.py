@@ -21,10 +21,10 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.meshes.springs.placement import gauss_points
-from coilset.model.base.style import STYLE
-from coilset.model.case import check
-from coilset.model.results.records.record import Step
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import check
+from coilset.model.core.results.records.record import Step
 from coilset.verification.study import Study
 
 FAST = False

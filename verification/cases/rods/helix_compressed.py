@@ -18,10 +18,10 @@ from matplotlib.figure import Figure
 
 from coilset.meshes.springs.placement import section_placement
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.rod.elements import THESIS
-from coilset.model.rotations.triads import chord_triads
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.rod.elements import THESIS
+from coilset.model.core.rotations.triads import chord_triads
 from coilset.verification.chain import ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, drive
 from coilset.verification.references.rod_shooting import Stiffness
 from coilset.verification.references.uniform_helix import Helix, deformed

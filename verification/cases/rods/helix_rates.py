@@ -15,9 +15,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import check
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import check
 from coilset.verification.spring_references.curved_rod import clamped_rate
 from coilset.verification.study import Study
 

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from scipy import sparse
 from scipy.optimize import brentq
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, straight
 from coilset.verification.references.stability import twisted_rod
 from coilset.verification.stability import lowest_eigenvalue, negative_pivots, tangent

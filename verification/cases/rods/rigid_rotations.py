@@ -9,8 +9,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
 from coilset.verification.chain import ROTATION_X, X, chain, drive
 from coilset.verification.study import Study
 

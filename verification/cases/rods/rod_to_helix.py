@@ -22,10 +22,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, chain, straight
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study

@@ -25,17 +25,17 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.meshes.boundary import Boundary
-from coilset.meshes.section import section_mesh
-from coilset.meshes.section_shapes import Egg, Outline, Oval, Tube, rectangle
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.section.outlined_section import Outlined
-from coilset.model.section.rules import DiskRule, polar
-from coilset.model.slice.analysis import ACROSS, INSIDE
-from coilset.model.slice.problem import SliceProblem
-from coilset.model.slice.slice import Coil, Slice
-from coilset.model.slice.watch import Watch, shear
+from coilset.meshes.sections.boundary import Boundary
+from coilset.meshes.sections.mesh import section_mesh
+from coilset.meshes.sections.shapes import Egg, Outline, Oval, Tube, rectangle
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import DiskRule, polar
+from coilset.model.physics.outlines.outlined_section import Outlined
+from coilset.model.physics.slice.analysis import ACROSS, INSIDE
+from coilset.model.physics.slice.problem import SliceProblem
+from coilset.model.physics.slice.slice import Coil, Slice
+from coilset.model.physics.slice.watch import Watch, shear
 from coilset.verification.one_section.outlined_coil import OutlinedCoil
 from coilset.verification.study import Study
 

@@ -4,7 +4,7 @@ Torsion constant: of half a disk, Prandtl's stress function as a Fourier series 
 J = 8/π Σ 1/(n² (n + 2)²) r⁴ over odd n = (π/2 − 4/π) r⁴. Of other segments, the stress function is solved by finite
 elements; J from it is a lower bound, and that of the section's warping an upper one.
 
-A coil whose wire is such a segment all along is one slice of finite elements (`coilset.model.slice`), in three
+A coil whose wire is such a segment all along is one slice of finite elements (`coilset.model.physics.slice`), in three
 dimensions, which knows nothing of the sections. Its flat faces a seat, as that of an end does. Compared are the rates
 of turns without pitch that are pulled apart, with ends free to turn; and turns that are pulled by five times the travel
 at which a round wire yields, and let go.
@@ -18,17 +18,17 @@ import ufl
 from dolfinx import default_scalar_type, fem
 from dolfinx.fem.petsc import LinearProblem
 
-from coilset.meshes.section import SectionMesh, section_mesh
-from coilset.meshes.section_shapes import Curve
+from coilset.meshes.sections.mesh import SectionMesh, section_mesh
+from coilset.meshes.sections.shapes import Curve
 from coilset.meshes.springs.placement import straight
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.section.kinds import make_sections
-from coilset.model.section.outlined_section import Segment
-from coilset.model.section.rules import polar
-from coilset.model.slice.problem import SliceProblem
-from coilset.model.slice.slice import Coil, Slice
-from coilset.model.slice.watch import Watch
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.kinds import make_sections
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.outlines.outlined_section import Segment
+from coilset.model.physics.slice.problem import SliceProblem
+from coilset.model.physics.slice.slice import Coil, Slice
+from coilset.model.physics.slice.watch import Watch
 from coilset.verification.study import Study
 
 RADIUS = 2.5  # mm

@@ -18,7 +18,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
+from coilset.model.core.base.style import STYLE
 from coilset.verification.one_section.ends import ends, of_turn
 from coilset.verification.one_section.recorded_solids import RECORDED, Solid
 from coilset.verification.one_section.slice_runs import pressed as press_slice

@@ -17,16 +17,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import read_case
-from coilset.model.case.case import ANGLES, SectionSpec
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.material.point import points
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.section.rules import DiskRule, polar
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import read_case
+from coilset.model.core.case.case import ANGLES, SectionSpec
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.material.point import points
+from coilset.model.core.section.rules import DiskRule, polar
 from coilset.verification.study import Study
 
 FAST = False

@@ -18,11 +18,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.meshes.section_shapes import Outline, Oval, Tube, rectangle
-from coilset.model.base.style import STYLE
-from coilset.model.case.case import SectionSpec
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
+from coilset.meshes.sections.shapes import Outline, Oval, Tube, rectangle
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case.case import SectionSpec
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
 from coilset.verification.cases.sections.any_wire import unit
 from coilset.verification.one_section.outlined_coil import OutlinedCoil
 from coilset.verification.spring_references import yielding_ring

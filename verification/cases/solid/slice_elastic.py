@@ -12,11 +12,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.meshes.section_shapes import Oval, rectangle, round_wire
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.slice.analysis import ACROSS
+from coilset.meshes.sections.shapes import Oval, rectangle, round_wire
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.physics.slice.analysis import ACROSS
 from coilset.verification.one_section.slice_references import (
     ring_sector,
     torsion_constant_ellipse,

@@ -13,11 +13,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.slice.analysis import ACROSS
-from coilset.model.uniform_coil import rod as uniform
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.physics.slice.analysis import ACROSS
+from coilset.model.physics.uniform_coil import rod as uniform
 from coilset.verification.one_section.slice_runs import WIRE, Pressed, pressed
 from coilset.verification.solid_study.pressing import PressedSection
 from coilset.verification.study import Study

@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.style import STYLE
+from coilset.model.core.base.style import STYLE
 from coilset.verification.one_section import recorded_solids as solids
 from coilset.verification.one_section.ends import ends as of_ends
 from coilset.verification.one_section.slice_runs import Pressed, pressed

@@ -15,14 +15,14 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.meshes.solid import SectionGrid, straight_wire
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
-from coilset.model.solid.heads import Motion
-from coilset.model.solid.points import MaterialPoints
-from coilset.model.solid.problem import SolidProblem
+from coilset.meshes.solids.solid import SectionGrid, straight_wire
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.physics.solid.heads import Motion
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.physics.solid.problem import SolidProblem
 from coilset.verification.solid_study.references import nadai_torque, plastic_bending_moment
 from coilset.verification.study import Study
 

@@ -13,10 +13,10 @@ two in one of seventy. The set of a press to 95 % must be within 1 %, as of virg
 
 import numpy as np
 
-from coilset.model.case import Case, check
-from coilset.model.spring_fit import rods
-from coilset.model.spring_fit.fit import SpringFit, fit_springs, form_of
-from coilset.model.spring_fit.laws import TRIAL
+from coilset.model.core.case import Case, check
+from coilset.model.tools.spring_fit import rods
+from coilset.model.tools.spring_fit.fit import SpringFit, fit_springs, form_of
+from coilset.model.tools.spring_fit.laws import TRIAL
 from coilset.verification.cases.springs import spring_fit as virgin
 from coilset.verification.study import Study
 

@@ -20,14 +20,14 @@ import yaml
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import read_case
-from coilset.model.design.design import find, make_search
-from coilset.model.design.file import read_design_file
-from coilset.model.design.output import found_data
-from coilset.model.design.search import Search
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import read_case
+from coilset.model.tools.design.design import find, make_search
+from coilset.model.tools.design.file import read_design_file
+from coilset.model.tools.design.output import found_data
+from coilset.model.tools.design.search import Search
 from coilset.verification.study import Study
 
 MESH = {"elements_per_turn": 8, "section": {"radial": 3, "angular": 10}}

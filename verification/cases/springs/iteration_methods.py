@@ -26,15 +26,15 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.case import Case, read_case
-from coilset.model.equilibrium.newton.methods import METHODS, rod_method
-from coilset.model.equilibrium.newton.newton import Newton, Start
-from coilset.model.equilibrium.newton.outcome import Outcome
-from coilset.model.results.records.record import Snapshot, Step
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.examples import EXAMPLES
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import Case, read_case
+from coilset.model.core.equilibrium.newton.methods import METHODS, rod_method
+from coilset.model.core.equilibrium.newton.newton import Newton, Start
+from coilset.model.core.equilibrium.newton.outcome import Outcome
+from coilset.model.core.results.records.record import Snapshot, Step
 from coilset.verification.counting import listen
 from coilset.verification.study import Study
 

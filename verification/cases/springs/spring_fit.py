@@ -19,13 +19,13 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.case import Case, check
-from coilset.model.spring_fit import rods
-from coilset.model.spring_fit.fit import SpringFit, fit_springs
-from coilset.model.spring_fit.laws import CONSTANTS, TRIAL, Form
-from coilset.model.spring_fit.pressing import Pressing
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import Case, check
+from coilset.model.tools.spring_fit import rods
+from coilset.model.tools.spring_fit.fit import SpringFit, fit_springs
+from coilset.model.tools.spring_fit.laws import CONSTANTS, TRIAL, Form
+from coilset.model.tools.spring_fit.pressing import Pressing
 from coilset.verification.study import Study
 
 FAST = False

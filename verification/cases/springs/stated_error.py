@@ -14,8 +14,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.errors import CoilsetError
-from coilset.model.base.style import STYLE
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.base.style import STYLE
 from coilset.verification.random_springs import stated_error
 from coilset.verification.study import Study
 

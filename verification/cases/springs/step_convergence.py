@@ -25,12 +25,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.case import read_case
-from coilset.model.run.analysis import Analysis
-from coilset.model.run.examples import EXAMPLES
-from coilset.model.summary.summary import summarise
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.examples import EXAMPLES
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import read_case
 from coilset.verification.study import Study
 
 FAST = False

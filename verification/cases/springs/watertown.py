@@ -27,13 +27,13 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 from scipy.optimize import brentq
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import Case, check
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.summary import summarise
-from coilset.model.uniform_coil.rod import press
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.summary import summarise
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import Case, check
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.physics.uniform_coil.rod import press
 from coilset.verification.study import Study
 
 FAST = False

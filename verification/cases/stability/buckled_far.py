@@ -19,11 +19,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.case import check
-from coilset.model.run.analysis import Analysis
-from coilset.model.summary.warnings import run_warnings
+from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.warnings import run_warnings
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import check
 from coilset.verification.study import Study
 
 FAST = False

@@ -4,7 +4,7 @@ Wire 5, D 40, pitch 12, elastic, 16 rods per turn as by default (with 8, that of
 hold the wire's tips sideways and against rotation, unless a case says otherwise, and stay parallel. A spring between
 them therefore buckles as it does between clamped heads, with the coefficient ½ of EN 13906-1, and both are compared
 with Haringx's clamped column (`references/stability.py`). What is judged is the travel at which a run reports that the
-spring buckled (`model/results/records/buckling.py`). The numbers of turns include whole and fractional ones; with a
+spring buckled (`model/physics/stability/buckling.py`). The numbers of turns include whole and fractional ones; with a
 fractional number the ends push the axis to one side from the start.
 
 Beyond that travel the stable branch is drawn: the force hardly rises while the axis deflects.
@@ -16,13 +16,13 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.case import check
-from coilset.model.material import library
-from coilset.model.results.records.buckling import Buckling, buckling
-from coilset.model.results.records.record import Step
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import check
+from coilset.model.core.material import library
+from coilset.model.core.results.records.record import Step
+from coilset.model.physics.stability.buckling import Buckling, buckling
 from coilset.verification.references.stability import clamped_spring
 from coilset.verification.study import Study
 

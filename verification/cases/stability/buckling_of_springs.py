@@ -19,12 +19,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import check
-from coilset.model.figures.panels.buckling import column, mode_axis, plane
-from coilset.model.material import library
-from coilset.model.results.records.record import Step
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import check
+from coilset.model.core.material import library
+from coilset.model.core.results.records.record import Step
+from coilset.model.tools.figures.panels.buckling import column, mode_axis, plane
 from coilset.verification.references.stability import clamped_spring
 from coilset.verification.stability import lowest_eigenvalue, negative_pivots, tangent
 from coilset.verification.study import Study

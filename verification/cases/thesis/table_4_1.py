@@ -1,7 +1,7 @@
 """Table 4.1: Newton, modified Newton and BFGS on one degree of freedom, every printed digit
 
 Δr = 6 − 2 √u from u = 1, solution 9 (chapter 4.4). The three columns run through SNES with the option sets of
-`coilset.model.equilibrium.newton.methods`, without line search (β = 1) and with the first matrix kept. K⁻¹ of an
+`coilset.model.core.equilibrium.newton.methods`, without line search (β = 1) and with the first matrix kept. K⁻¹ of an
 iteration is its step over the residual at its start. Tolerance: half of the last printed digit.
 
 Two printed numbers are wrong in their last digits, as Newton's closed formula u ← 6 √u − u shows: 8.4146 for 8.4164 (=
@@ -15,8 +15,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from petsc4py import PETSc
 
-from coilset.model.base.style import STYLE
-from coilset.model.equilibrium.newton.methods import rod_method
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.equilibrium.newton.methods import rod_method
 from coilset.verification.study import Study
 
 FAST = True

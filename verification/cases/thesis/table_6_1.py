@@ -27,9 +27,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.interpolate import PchipInterpolator
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.section.rules import abramowitz9, polar
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import abramowitz9, polar
 from coilset.verification import figures
 from coilset.verification.frame import KEEP, Frame
 from coilset.verification.references.layered_beam import LayeredCantilever

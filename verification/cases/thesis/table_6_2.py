@@ -24,9 +24,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.section.rules import abramowitz9
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import abramowitz9
 from coilset.verification import figures
 from coilset.verification.frame import KEEP, Frame
 from coilset.verification.study import Study

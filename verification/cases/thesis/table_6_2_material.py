@@ -13,10 +13,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.material.point import points
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.material.point import points
 from coilset.verification.cases.thesis.table_6_2 import PULL, READ, RELEASE, YIELD
 from coilset.verification.study import Study
 

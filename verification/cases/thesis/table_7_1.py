@@ -27,10 +27,10 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.law.law import Law
-from coilset.model.section.rules import polar
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.rules import polar
 from coilset.verification import figures
 from coilset.verification.frame import KEEP, Frame
 from coilset.verification.stops import Stops

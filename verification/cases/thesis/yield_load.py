@@ -11,9 +11,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.case import check
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case import check
 from coilset.verification.study import Study
 
 FAST = True

@@ -23,10 +23,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.identification import creep_fit
-from coilset.model.material.identification.relaxation_tests import Readings
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.tools.identification import creep_fit
+from coilset.model.tools.identification.relaxation_tests import Readings
 from coilset.verification.references import relaxing_bar
 from coilset.verification.study import Study
 

@@ -26,10 +26,10 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
-from coilset.model.base.style import STYLE
-from coilset.model.case.case import check
-from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
-from coilset.model.run.analysis import Analysis
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case.case import check
+from coilset.model.physics.time.heat_equation import HeatConstants, HeatEquation
 from coilset.verification.study import Study
 
 FAST = False

@@ -19,13 +19,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.meshes.springs.placement import straight
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.material.creep.law import CreepLaw
-from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.law import Law
-from coilset.model.section.kinds import make_sections
-from coilset.model.section.rules import polar
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material.law.file import MaterialFile
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.section.kinds import make_sections
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.time.creep.law import CreepLaw
 from coilset.verification.references import relaxing_bar
 from coilset.verification.study import Study
 

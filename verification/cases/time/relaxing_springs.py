@@ -30,13 +30,13 @@ import yaml
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.base.errors import SolveError
-from coilset.model.base.style import STYLE
-from coilset.model.case.case import check
-from coilset.model.material.creep.law import CreepLaw
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.kinds import KINDS
-from coilset.model.section.rules import polar
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.errors import SolveError
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case.case import check
+from coilset.model.core.section.kinds import KINDS
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.time.creep.law import CreepLaw
 from coilset.verification.cases.time.relaxation import BEYOND, HOURS, JUDGED, RIM, WARM, YIELD, G, N, lapse, law
 from coilset.verification.one_section.helix import WIRE, HelixSection
 from coilset.verification.references import creeping_ring, relaxing_bar

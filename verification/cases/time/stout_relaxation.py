@@ -19,21 +19,21 @@ import yaml
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.meshes.section import section_mesh
-from coilset.meshes.section_shapes import round_wire
-from coilset.meshes.solid import SectionGrid, coil_section
-from coilset.model.base.style import STYLE
-from coilset.model.case.case import check
-from coilset.model.material import library
-from coilset.model.run.analysis import Analysis
-from coilset.model.section.rules import polar
-from coilset.model.slice.analysis import ACROSS, INSIDE
-from coilset.model.slice.problem import SliceProblem
-from coilset.model.slice.slice import Coil, Slice
-from coilset.model.solid.points import MaterialPoints
-from coilset.model.solid.problem import SolidProblem
-from coilset.model.solid.program import AxialProgram
-from coilset.model.uniform_coil.rod import hold, press
+from coilset.meshes.sections.mesh import section_mesh
+from coilset.meshes.sections.shapes import round_wire
+from coilset.meshes.solids.solid import SectionGrid, coil_section
+from coilset.model.compose.analysis import Analysis
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.case.case import check
+from coilset.model.core.material import library
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.slice.analysis import ACROSS, INSIDE
+from coilset.model.physics.slice.problem import SliceProblem
+from coilset.model.physics.slice.slice import Coil, Slice
+from coilset.model.physics.solid.points import MaterialPoints
+from coilset.model.physics.solid.problem import SolidProblem
+from coilset.model.physics.solid.program import AxialProgram
+from coilset.model.physics.uniform_coil.rod import hold, press
 from coilset.verification.solid_study.pressing import WIRE, PressedSection
 from coilset.verification.study import Study
 

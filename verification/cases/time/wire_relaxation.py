@@ -22,11 +22,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.material import library
-from coilset.model.material.creep.law import GAS_CONSTANT
-from coilset.model.material.identification.creep_fit import CreepFit, fit_creep
-from coilset.model.material.identification.relaxation_tests import Readings
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.material import library
+from coilset.model.physics.time.creep.law import GAS_CONSTANT
+from coilset.model.tools.identification.creep_fit import CreepFit, fit_creep
+from coilset.model.tools.identification.relaxation_tests import Readings
 from coilset.verification.study import Study
 
 FAST = True

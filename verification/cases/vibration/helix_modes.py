@@ -18,15 +18,15 @@ from mpi4py import MPI
 from coilset.meshes.line import line_mesh
 from coilset.meshes.springs.placement import section_placement
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.base.style import STYLE
-from coilset.model.equilibrium.system.layout import SEATS, LineLayout
-from coilset.model.equilibrium.system.load import Load
-from coilset.model.equilibrium.system.system import System
-from coilset.model.rod.elements import MIXED
-from coilset.model.rod.rod import Rod
-from coilset.model.rotations.triads import chord_triads
-from coilset.model.section.rules import polar
-from coilset.model.vibration.modes import Modes, natural_modes
+from coilset.model.core.base.style import STYLE
+from coilset.model.core.equilibrium.system.layout import SEATS, LineLayout
+from coilset.model.core.equilibrium.system.load import Load
+from coilset.model.core.equilibrium.system.system import System
+from coilset.model.core.rod.elements import MIXED
+from coilset.model.core.rod.rod import Rod
+from coilset.model.core.rotations.triads import chord_triads
+from coilset.model.core.section.rules import polar
+from coilset.model.physics.vibration.modes import Modes, natural_modes
 from coilset.verification.chain import elastic
 from coilset.verification.spring_references.vibrating_helix import HelicalRod
 from coilset.verification.study import Study

@@ -1,0 +1,1 @@
+"""Drawings of springs, views and STEP files."""

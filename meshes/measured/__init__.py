@@ -1,0 +1,1 @@
+"""A spring from a measured centre line."""

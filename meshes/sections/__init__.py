@@ -1,0 +1,1 @@
+"""Outlines of wire, and meshes of its section."""

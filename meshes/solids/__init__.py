@@ -1,0 +1,1 @@
+"""Meshes of a coil as a 3D body."""

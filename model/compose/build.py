@@ -1,0 +1,281 @@
+"""From a case to the parts of its analysis: mesh and rod, heat, Newton's method, control, continuation, records."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.line import line_mesh
+from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.placement import Placement, chord_placement, refuse_sharp_bends, section_placement
+from coilset.model.core.base.package import package
+from coilset.model.core.base.warning import Warning
+from coilset.model.core.case import Case
+from coilset.model.core.case.head_freedoms import DamperSpec, HeadsSpec
+from coilset.model.core.case.loading import is_pressed
+from coilset.model.core.case.material import case_allowed, case_elastic, case_strength
+from coilset.model.core.case.phases import Phase, heads_of
+from coilset.model.core.case.seats import SeatsSpec
+from coilset.model.core.contact.base import Contact
+from coilset.model.core.equilibrium.newton.contact_limit import ContactLimit
+from coilset.model.core.equilibrium.newton.methods import Method, rod_method
+from coilset.model.core.equilibrium.newton.newton import Newton
+from coilset.model.core.equilibrium.path.continuation import Continuation
+from coilset.model.core.equilibrium.system.heads import Heads, Holding
+from coilset.model.core.equilibrium.system.layout import LineLayout
+from coilset.model.core.equilibrium.system.system import System
+from coilset.model.core.material.law.law import Law
+from coilset.model.core.results.records.record import ContactRecord, ForceLine, Limit, Limits, Setup
+from coilset.model.core.rod.elements import ELEMENTS
+from coilset.model.core.rod.rod import Rod
+from coilset.model.core.rotations.triads import chord_triads
+from coilset.model.core.runtime.threads import Threads
+from coilset.model.physics.accuracy.contact_fineness import coarse_mesh_warnings
+from coilset.model.physics.accuracy.effort import Effort, machine_memory
+from coilset.model.physics.stability.branch_switching import Branches
+from coilset.model.physics.stability.stability import Stability
+from coilset.model.tools.standards.buckling import buckling_travel, seating_of
+from coilset.model.tools.standards.case_warnings import case_warnings
+
+# The doors to what not every spring has.
+STEP_ERROR = "coilset.model.physics.accuracy.step_error"
+LIMITS = "coilset.model.tools.standards.limits"
+HEAT, PAST = "coilset.model.physics.time.heat", "coilset.model.physics.manufacture.initial_state"
+OUTLINED, LEVER = "coilset.model.physics.outlines.outlined_section", "coilset.model.physics.guides.lever"
+PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
+AUGMENTED = 2.0  # times the maximum penetration: up to there contacts are augmented although the case does not say so
+
+
+@dataclass(frozen=True)
+class MeshedWire:
+    """The wire of a spring in elements.
+
+    Attributes:
+        turns: of the stations, shape (n + 1,).
+        radius: of the elements, shape (n,), mm.
+        placement: Placement of their sections.
+        rod: Rod.
+        warnings: about mesh and effort.
+    """
+
+    turns: np.ndarray
+    radius: np.ndarray
+    placement: Placement
+    rod: Rod
+    warnings: tuple[Warning, ...]
+
+
+def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: int) -> MeshedWire:
+    """The wire of a case's spring.
+
+    Raises:
+        InputError: if it needs more memory than there is, bends too sharply, or is outside the law's temperatures.
+    """
+    element = ELEMENTS[case.mesh.element]
+    turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
+    section, rule, automatic = case.mesh.section, case.section_rule, case.solver.control.steps.automatic
+    if spring.section is not None:
+        outlined = package(OUTLINED, "wire that is not round", "spring.wire").Outlined
+        rule = outlined(spring.section.scaled(1.0, spring.hand)).rule(len(rule))  # the binormal of a left one is down
+    steps = sum(phase.count(automatic) for phase in case.loading)
+    points = 2 * len(rule) * len(element.abscissae) // 2  # an effort is that of two sections
+    effort = Effort.of(len(turns) - 1, points, steps, case.steps_error is not None)
+    effort.check_memory(machine_memory())
+    # before the rod is made, which takes the memory that this needs for a moment
+    coarse = coarse_mesh_warnings(spring, turns)
+    line = line_mesh(spring.centre_line(turns), comm)
+    radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
+    chords = chord_triads(np.diff(line.stations, axis=0))
+    if case.mesh.axis == "chords":
+        placement = chord_placement(spring, turns, chords, element.xi)
+    else:
+        to_normal = section.kind != "plane" or bool(case.past) or spring.section is not None
+        placement = section_placement(spring, turns, chords, element.xi, to_normal)
+        refuse_sharp_bends(placement, radius * (1.0 if spring.section is None else spring.section.high[0]), turns)
+    rod = Rod(
+        line,
+        radius,
+        law,
+        rule,
+        placement,
+        case.temperature,
+        section.kind,
+        case.section_degree,
+        Threads(threads),
+        element,
+    )
+    return MeshedWire(turns, radius, placement, rod, (*coarse, *effort.warnings()))
+
+
+def build_heat(case: Case, rod: Rod) -> Any:
+    """WireHeat of the rod, if the case requests it, else None."""
+    spec = case.heat
+    if spec is None:
+        return None
+    start = rod.temperature if spec.surroundings is None else spec.surroundings
+    heat = package(HEAT, "heat that flows", "heat")
+    return heat.WireHeat(rod, heat.heat_constants(rod.law, spec.conductivity, spec.convection, spec.tips, start))
+
+
+def build_past(case: Case, rod: Rod) -> tuple[float | None, list[Warning]]:
+    """Give the wire the stresses of its manufacture, if the case has one; collective.
+
+    Returns:
+        Mean diameter to which it was coiled, mm, None if it was not, and warnings.
+
+    Raises:
+        InputError: if it cannot be made so.
+    """
+    if not case.past:
+        return None, []
+    made = package(PAST, "wire with a past", f"spring.{case.past[0]}")
+    return made.give_past(rod, case.spring), made.past_warnings(rod, case.spring)
+
+
+def _deepest(case: Case, least_radius: float) -> float:
+    """Penetration above which contacts are augmented or states rejected, mm, by that of the thinnest element."""
+    return case.contact.penetration_limit * 2.0 * least_radius
+
+
+def build_newton(case: Case, system: System, least_radius: float) -> Newton:
+    """Newton's method, or the other one that the case names.
+
+    Args:
+        least_radius: of the elements, mm.
+    """
+    solver, contact = case.solver, case.contact
+    control, wire_diameter = solver.control.newton, 2.0 * system.line.rod.largest_radius
+    limit = ContactLimit(system, contact.penetration_limit * wire_diameter)
+    tolerance, augmented = contact.augmentation_tolerance, np.inf
+    if tolerance is None:  # a much deeper state is on the wrong side, or from too long a step
+        tolerance = _deepest(case, least_radius)
+        augmented = AUGMENTED * tolerance
+    return Newton(
+        system, build_method(case, system.line, solver.method), solver.tolerance, control, limit, tolerance, augmented
+    )
+
+
+def build_method(case: Case, layout: LineLayout, name: str) -> Method:
+    """An iteration method with the case's options.
+
+    Raises:
+        InputError: if there is no such method.
+    """
+    # an arc by which every node moves by about the wire's radius
+    arc = layout.rod.largest_radius * np.sqrt(len(layout.station_dofs))
+    return rod_method(name, layout.comm.size, case.solver.options, arc)
+
+
+def build_control(case: Case, spring: Spring, system: System, turns: np.ndarray) -> Heads:
+    """The spring between its heads; `turns` of the stations."""
+    clamped = case.ends == "clamped"
+    holder: HeadsSpec | SeatsSpec = case.clamps if clamped else case.seats
+    rotating = any(spec.tilt != "held" or spec.turn != "held" for spec in (holder.bottom, holder.top))
+    driven = any(target.rotates for phase in case.loading for target in heads_of(phase).values())
+    holding = Holding(clamped, case.seats.hold == "tips", (holder.bottom.held(), holder.top.held()))
+    if clamped:
+        stations = [int(np.argmin(np.abs(turns - held))) for held in spring.held]
+        pulled = [tail is not None and tail.pulled for tail in spring.tails]
+        points = [tail is not None and tail.on_point for tail in spring.tails]
+        rotates = rotating or driven or any(points)
+        holding = holding._replace(
+            fix=package(LEVER, "a head that rotates", "heads").FixedStation if rotates else None,
+            stations=(stations[0], stations[1]),
+            at_station=(pulled[0], pulled[1]),
+            on_point=(points[0], points[1]),
+        )
+    return Heads(system, spring.free_length, holding, float(spring.mean_radius(0.5 * spring.turns)))
+
+
+def build_continuation(
+    case: Case, newton: Newton, control: Heads, stability: Stability, least_radius: float
+) -> Continuation:
+    """The steps along the path, with an estimate of their error unless the case wants none.
+
+    Args:
+        least_radius: of the elements, mm.
+    """
+    steps, accuracy = case.solver.control.steps, case.steps_error
+    if not newton.system.is_symmetric:
+        steps = replace(steps, largest=min(steps.largest, steps.largest_with_friction))
+    error = None
+    if accuracy is not None:
+        error = package(STEP_ERROR, "an estimate of errors", "accuracy").StepError(control, accuracy, steps)
+    return Continuation(
+        newton, steps, _deepest(case, least_radius), branches=partial(Branches, stability), step_error=error
+    )
+
+
+def build_setup(
+    case: Case,
+    spring: Spring,
+    wire: MeshedWire,
+    contacts: Sequence[Contact],
+    past: tuple[float | None, list[Warning]],
+) -> Setup:
+    """Setup of the records of a run; `past` as `build_past` gives it."""
+    rod, law, least_radius = wire.rod, wire.rod.law, float(wire.radius.min())
+    records = tuple(
+        ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts
+    )
+    limits = Limits(
+        law.data.validity.plastic_work,
+        case_strength(case, spring),
+        PENETRATION * 2.0 * least_radius,
+        case.steps_error,
+        *case_allowed(case, spring),
+        creep=law.data.creep.tests if law.data.creep else None,
+    )
+    warnings = (*case_warnings(case, spring, law), *past[1], *wire.warnings)
+    elastic = case_elastic(case, law)
+    bounds: tuple[Limit, ...] = ()
+    if case.limits:
+        bounds = package(LIMITS, "a limit", "limits").case_limits(case, spring, elastic.shear_modulus)
+    ratio = elastic.shear_modulus / elastic.young_modulus
+    buckling = buckling_travel(spring, ratio, seating_of(case)) if is_pressed(case, spring) else math.inf
+    return Setup(
+        spring=spring,
+        material=law.name,
+        ends=case.ends,
+        phases=tuple(phase.label for phase in case.loading),
+        forces_given=forces_given(case),
+        torques_given=tuple(any(head.torque is not None for head in heads_of(one).values()) for one in case.loading),
+        turns=wire.turns,
+        wire_radius=wire.radius,
+        rule=rod.rule,
+        contacts=records,
+        section_kind=case.mesh.section.kind,
+        element=wire.rod.element,
+        placement=wire.placement,
+        buckling_travel=buckling,
+        limits=limits,
+        rates_at=tuple(case.rates_at),
+        warnings=warnings,
+        coiling_diameter=past[0],
+        force_line=build_force_line(case),
+        bounds=bounds,
+        initial_tension=getattr(case.spring, "initial_tension", None) or 0.0,
+        strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
+    )
+
+
+def forces_given(case: Case) -> tuple[bool, ...]:
+    """Of each phase, whether it ends at a force of the load program; time may pass under one."""
+    given = [False]
+    for phase in case.loading:
+        given.append(phase.gives_force if isinstance(phase, Phase) else phase.duration.keep == "force" and given[-1])
+    return tuple(given[1:])
+
+
+def build_force_line(case: Case) -> ForceLine | None:
+    """Where the case reports the force line; without a damper its moments are about the axis, at the bottom seat."""
+    spec = case.force_line
+    if spec is None:
+        return None
+    damper = spec.damper or DamperSpec(point=[0.0, 0.0, 0.0], direction=[0.0, 0.0, 1.0])
+    guides = (tuple(damper.guides or ()), damper.friction or 0.0)
+    return ForceLine(spec.lower, spec.upper, tuple(damper.point), tuple(damper.direction), *guides)

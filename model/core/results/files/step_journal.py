@@ -1,0 +1,65 @@
+"""Steps of a checkpoint, one line of JSON each, so that a step is written without rewriting those before it."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.results.files.folder import not_linked
+from coilset.model.core.results.records.frame import Frame
+from coilset.model.core.results.records.record import SeatReactions, Step
+
+
+class StepJournal:
+    """Steps with their SeatReactions and Frames, appended one by one; the checkpoint holds how many are valid.
+
+    Args:
+        path: the file. Its content is overwritten, unless `read` has read it.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path, self._written, self._length = path, 0, 0
+
+    def append(self, steps: Sequence[Step], seats: Sequence[SeatReactions], frames: Sequence[Frame]) -> None:
+        """Write the steps that are not written yet.
+
+        Raises:
+            CoilsetError: if the file cannot be written.
+        """
+        new = zip(*(records[self._written :] for records in (steps, seats, frames)), strict=True)
+        lines = "".join(_line(*records) for records in new).encode()
+        try:
+            with open(self.path, "r+b" if self._length else "wb", opener=not_linked) as file:
+                file.truncate(self._length)  # written by a killed run after its last state
+                file.seek(self._length)
+                file.write(lines)
+        except OSError as error:
+            raise CoilsetError(f"{self.path}: cannot be written: {error.strerror or error}") from None
+        self._written, self._length = len(steps), self._length + len(lines)
+
+    def read(self, count: int) -> tuple[tuple[Step, ...], tuple[SeatReactions, ...], tuple[Frame, ...]]:
+        """The first steps of the file; later ones are appended after them.
+
+        Raises:
+            ValueError: if there are fewer, or a line is not a step.
+        """
+        with open(self.path, "rb") as file:
+            lines = list(islice(file, count))
+        if len(lines) < count:
+            raise ValueError(f"{self.path.name} has {len(lines)} steps of {count}")
+        rows = [json.loads(line) for line in lines]
+        self._written, self._length = count, sum(map(len, lines))
+        pressures = (np.array(row["seats"].pop("pressure")).reshape(-1, 3) for row in rows)
+        seats = (SeatReactions.from_row(row["seats"], part) for row, part in zip(rows, pressures, strict=True))
+        frames = tuple(Frame.from_row(row["frame"]) for row in rows)
+        return tuple(Step(**row["step"]) for row in rows), tuple(seats), frames
+
+
+def _line(step: Step, seats: SeatReactions, frame: Frame) -> str:
+    reactions: dict[str, Any] = {**seats.row(), "pressure": seats.pressure.tolist()}
+    return json.dumps({"step": asdict(step), "seats": reactions, "frame": frame.row()}) + "\n"

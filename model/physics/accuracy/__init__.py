@@ -1,0 +1,1 @@
+"""What steps leave wrong, sections of finer rules, coarse meshes and effort."""

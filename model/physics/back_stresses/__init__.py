@@ -1,0 +1,1 @@
+"""Several back stresses, and their spin."""

@@ -1,0 +1,1 @@
+"""Grooves, slots, arbors, sleeves and springs that hold wire or seats."""

@@ -1,0 +1,1 @@
+"""Wire that is not round: its section, and how two such wires touch."""

@@ -1,0 +1,1 @@
+"""Laws from Python or MFront."""

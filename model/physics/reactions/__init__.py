@@ -1,0 +1,1 @@
+"""Forces and moments of the seats, and their balance."""

@@ -1,0 +1,1 @@
+"""Signs of pivots, weakest modes, snap-through."""

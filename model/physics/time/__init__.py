@@ -1,0 +1,1 @@
+"""Creep, overstress and heat: laws and rods that depend on time."""

@@ -1,0 +1,1 @@
+"""The finished spring at its working lengths."""

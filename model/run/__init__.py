@@ -1,1 +1,0 @@
-"""From a case to the records of its run."""

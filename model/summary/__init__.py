@@ -1,1 +1,0 @@
-"""From the records of a run to its numbers, warnings and files."""

@@ -1,0 +1,1 @@
+"""What is done with runs: each folder is a package that can be deleted."""

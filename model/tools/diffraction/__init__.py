@@ -1,0 +1,1 @@
+"""What an X-ray diffractometer would measure."""

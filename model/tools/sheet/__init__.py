@@ -1,0 +1,1 @@
+"""A spring by the formulas of the standards, beside its run."""
