@@ -25,12 +25,12 @@ SOLVES = [
     "commands",
     "examples",
     "install",
-    "material/test_fit.py",
     "meshes/test_solved_springs.py",
-    "solid",
+    "physics/solid",
     "spring",
-    "spring_fit",
-    "sweep",
+    "tools/identification/test_fit.py",
+    "tools/spring_fit",
+    "tools/sweep",
     "verification",
 ]
 

@@ -1,7 +1,7 @@
 """The height at which springs are solid, against stacks worked out by hand; in wire diameters unless said otherwise.
 
 The middle of a double cone lies at y = 0, and its radius falls by c wire diameters a turn on either side. Wires of one
-meridian lie whole turns apart. `tests/contact/test_block.py` presses such a spring onto its stack.
+meridian lie whole turns apart. `tests/core/contact/test_block.py` presses such a spring onto its stack.
 """
 
 import numpy as np

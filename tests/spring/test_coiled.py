@@ -143,7 +143,7 @@ def test_relief_in_the_past_is_relief_in_the_load_program():
     """Coiled, relieved free of load, cooled: nearly the same stress at the inside either way.
 
     Between clamped ends the wire cannot unbend; a section with a past can, and is bent tighter before. How sections are
-    relieved is judged by `tests/section/test_coiling.py`.
+    relieved is judged by `tests/physics/manufacture/test_coiling.py`.
     """
     relieved = analysis_of(spring={**SPRING, "relieved": RELIEF}, material="creeping")
     program = [

@@ -19,7 +19,7 @@ LONGER = {
     "ring-between-plates",
     "section-elastic",
     "solid-closed-solutions",
-}  # tests/contact, section, solid have parts
+}  # tests/core/contact, section, solid have parts
 
 
 def test_the_tables_of_the_thesis_are_among_the_fast_ones():

@@ -3,7 +3,7 @@
 A turn of the library's `chaboche`, wire 5 mm, is compressed nine tenths of the way to block in 12 steps and released,
 for D/d = 4, 6, 8 and 12, as in slice-uniform. The slice uses the law for all six stresses, with back stresses that
 rotate with the material; the rod uses the law for three. Both come from one kernel, which
-`tests/material/test_back_stresses.py` compares with the rate equations.
+`tests/physics/back_stresses/test_back_stresses.py` compares with the rate equations.
 
 Tolerance: 0.1 %. The deviations found are 0.03 % in force and 0.09 % in set, both at D/d = 6. There, 12 × 32 points
 instead of the rod's 48 move its set by 0.05 % towards the slice's, and a slice with three times as many unknowns

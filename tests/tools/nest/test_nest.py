@@ -29,7 +29,7 @@ COMMON = {
     "loading": [{"to": "block"}],
 }
 LOADING = [{"to": {"height": 30.0}, "steps": 4}, {"to": {"height": 33.0}, "steps": 1}]
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = Path(__file__).resolve().parents[3]
 
 
 def write(folder, outer=None, inner=None, loading=LOADING, **common):

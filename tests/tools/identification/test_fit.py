@@ -15,7 +15,7 @@ from coilset.model.tools.identification import experiments, figures, fit
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.law import material_fit
 
-DATA = Path(__file__).resolve().parents[2] / "examples" / "material" / "fit"
+DATA = Path(__file__).resolve().parents[3] / "examples" / "material" / "fit"
 LIMITS = {"k0_squared": 0.04, "a1": 0.06, "a3": 0.08, "k_inf_squared": 0.12, "a5": 0.12, "a7": 0.4, "a": 0.02}
 
 

@@ -290,7 +290,7 @@ def test_all_figures_share_one_look():
     with mpl.rc_context():
         mpl.style.use(FILE)
         assert {name: mpl.rcParams[name] for name in STYLE} == dict(STYLE)
-    repository = Path(__file__).resolve().parents[2]
+    repository = Path(__file__).resolve().parents[3]
     sources = [path for room in ("model", "verification") for path in (repository / room).rglob("*.py")]
     assert not [path for path in sources if "axes.spines" in path.read_text(encoding="utf-8")]
 

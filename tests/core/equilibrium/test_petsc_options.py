@@ -13,7 +13,7 @@ from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import read_case
 from coilset.model.core.equilibrium.petsc_options import OPTIONS, bare, plain
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "methods.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "methods.md"
 SMALL = [
     "mesh.elements_per_turn=8",
     "mesh.section.rule=abramowitz9",

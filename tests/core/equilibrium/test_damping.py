@@ -13,7 +13,7 @@ from coilset.model.core.case import read_case
 from coilset.model.core.equilibrium.newton.damping import NOTHING, RELAX, SHORT, Damping
 from coilset.model.physics.stability.stability import _rayleigh_ritz
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "ck15_presetting.yaml"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "ck15_presetting.yaml"
 WEAK, STIFF = 0.5, 4e4  # N/mm
 WEIGHTS = np.array([1.0, 2.0, 1.0])
 

@@ -22,7 +22,7 @@ from coilset.model.tools.sweep.evaluate import evaluate
 from coilset.model.tools.sweep.journal import Journal, read_records
 from coilset.model.tools.sweep.plan import Plan
 
-REPOSITORY = Path(__file__).resolve().parents[2]
+REPOSITORY = Path(__file__).resolve().parents[3]
 CASE = {
     "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.5, "pitch": 12.0},
     "ends": "clamped",

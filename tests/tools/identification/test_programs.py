@@ -14,7 +14,7 @@ from coilset.model.tools.identification import programs
 from coilset.scripts.commands.material import app
 from coilset.verification.references import heun
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "material"
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "material"
 PATHS = {  # the strains of the shipped programs, without spin: torsion then leaves the length as it is
     "tension": [(0.15, 0, 0)],
     "torsion_reversal": [(0, 0.10, 0), (0, -0.15, 0)],

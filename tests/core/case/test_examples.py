@@ -9,7 +9,7 @@ from coilset.model.core.base.yaml import load_yaml
 from coilset.model.core.case import read_case
 from coilset.model.core.material import library
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 FILES = sorted([*EXAMPLES.rglob("*.yaml"), *library.FOLDER.glob("*.yaml")])
 CASES = [EXAMPLES / "ck15_presetting.yaml", *sorted((EXAMPLES / "springs").glob("*.yaml"))]
 
