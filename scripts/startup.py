@@ -57,4 +57,4 @@ def load_for_solve() -> None:
 
     import coilset.model.compose.contacts
     import coilset.model.physics.accuracy.finer_path
-    import coilset.model.tools.standards.case_warnings  # noqa: F401
+    import coilset.model.tools.limits.case_warnings  # noqa: F401

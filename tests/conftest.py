@@ -1,6 +1,7 @@
 """Shared by all tests: small springs, rods and wires that touch, and the communicator of the rank alone."""
 
 import os
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +58,15 @@ def resumed_after(tmp_path):
         return resumed
 
     return resume
+
+
+@pytest.fixture(scope="session")
+def reference():
+    """The law as rate equations, which share nothing with it; see rate_equations.py."""
+    sys.path.insert(0, str(Path(__file__).parent))
+    import rate_equations
+
+    return rate_equations
 
 
 @pytest.fixture(scope="session")

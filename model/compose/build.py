@@ -12,11 +12,11 @@ from mpi4py import MPI
 from coilset.meshes.line import line_mesh
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement, chord_placement, refuse_sharp_bends, section_placement
+from coilset.model.compose.parts import installed, lacking
 from coilset.model.core.base.package import package
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.case import Case
 from coilset.model.core.case.head_freedoms import DamperSpec, HeadsSpec
-from coilset.model.core.case.loading import is_pressed
 from coilset.model.core.case.material import case_allowed, case_elastic, case_strength
 from coilset.model.core.case.phases import Phase, heads_of
 from coilset.model.core.case.seats import SeatsSpec
@@ -34,16 +34,9 @@ from coilset.model.core.rod.elements import ELEMENTS
 from coilset.model.core.rod.rod import Rod
 from coilset.model.core.rotations.triads import chord_triads
 from coilset.model.core.runtime.threads import Threads
-from coilset.model.physics.accuracy.contact_fineness import coarse_mesh_warnings
-from coilset.model.physics.accuracy.effort import Effort, machine_memory
-from coilset.model.physics.stability.branch_switching import Branches
-from coilset.model.physics.stability.stability import Stability
-from coilset.model.tools.standards.buckling import buckling_travel, seating_of
-from coilset.model.tools.standards.case_warnings import case_warnings
 
 # The doors to what not every spring has.
-STEP_ERROR = "coilset.model.physics.accuracy.step_error"
-LIMITS = "coilset.model.tools.standards.limits"
+LIMITS = "coilset.model.tools.limits.limits"
 HEAT, PAST = "coilset.model.physics.time.heat", "coilset.model.physics.manufacture.initial_state"
 OUTLINED, LEVER = "coilset.model.physics.outlines.outlined_section", "coilset.model.physics.guides.lever"
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
@@ -83,10 +76,10 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
         rule = outlined(spring.section.scaled(1.0, spring.hand)).rule(len(rule))  # the binormal of a left one is down
     steps = sum(phase.count(automatic) for phase in case.loading)
     points = 2 * len(rule) * len(element.abscissae) // 2  # an effort is that of two sections
-    effort = Effort.of(len(turns) - 1, points, steps, case.steps_error is not None)
-    effort.check_memory(machine_memory())
-    # before the rod is made, which takes the memory that this needs for a moment
-    coarse = coarse_mesh_warnings(spring, turns)
+    warnings: tuple[Warning, ...] = ()
+    if (accuracy := installed("physics.accuracy.effort")) is not None:
+        # before the rod is made, which takes the memory that this needs for a moment
+        warnings = accuracy.checked(spring, turns, points, steps, case.steps_error is not None)
     line = line_mesh(spring.centre_line(turns), comm)
     radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
     chords = chord_triads(np.diff(line.stations, axis=0))
@@ -108,7 +101,7 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
         Threads(threads),
         element,
     )
-    return MeshedWire(turns, radius, placement, rod, (*coarse, *effort.warnings()))
+    return MeshedWire(turns, radius, placement, rod, warnings)
 
 
 def build_heat(case: Case, rod: Rod) -> Any:
@@ -192,22 +185,23 @@ def build_control(case: Case, spring: Spring, system: System, turns: np.ndarray)
 
 
 def build_continuation(
-    case: Case, newton: Newton, control: Heads, stability: Stability, least_radius: float
+    case: Case, newton: Newton, control: Heads, stability: Any | None, least_radius: float
 ) -> Continuation:
     """The steps along the path, with an estimate of their error unless the case wants none.
 
     Args:
+        stability: Stability of Newton's iteration; None: unstable paths are not left.
         least_radius: of the elements, mm.
     """
     steps, accuracy = case.solver.control.steps, case.steps_error
     if not newton.system.is_symmetric:
         steps = replace(steps, largest=min(steps.largest, steps.largest_with_friction))
-    error = None
-    if accuracy is not None:
-        error = package(STEP_ERROR, "an estimate of errors", "accuracy").StepError(control, accuracy, steps)
-    return Continuation(
-        newton, steps, _deepest(case, least_radius), branches=partial(Branches, stability), step_error=error
-    )
+    error = branches = None
+    if accuracy is not None and (estimate := installed("physics.accuracy.step_error")) is not None:
+        error = estimate.StepError(control, accuracy, steps)
+    if stability is not None and (switching := installed("physics.stability.branch_switching")) is not None:
+        branches = partial(switching.Branches, stability)
+    return Continuation(newton, steps, _deepest(case, least_radius), branches=branches, step_error=error)
 
 
 def build_setup(
@@ -230,13 +224,12 @@ def build_setup(
         *case_allowed(case, spring),
         creep=law.data.creep.tests if law.data.creep else None,
     )
-    warnings = (*case_warnings(case, spring, law), *past[1], *wire.warnings)
-    elastic = case_elastic(case, law)
+    elastic, standards = case_elastic(case, law), installed("tools.limits.before_run")
+    known = None if standards is None else standards.before_run(case, spring, law)
+    warnings = (*(known.warnings if known else ()), *past[1], *wire.warnings, *lacking())
     bounds: tuple[Limit, ...] = ()
     if case.limits:
         bounds = package(LIMITS, "a limit", "limits").case_limits(case, spring, elastic.shear_modulus)
-    ratio = elastic.shear_modulus / elastic.young_modulus
-    buckling = buckling_travel(spring, ratio, seating_of(case)) if is_pressed(case, spring) else math.inf
     return Setup(
         spring=spring,
         material=law.name,
@@ -251,7 +244,8 @@ def build_setup(
         section_kind=case.mesh.section.kind,
         element=wire.rod.element,
         placement=wire.placement,
-        buckling_travel=buckling,
+        buckling_travel=known.buckling_travel if known else math.inf,
+        nominal_stress=known.nominal_stress if known else (None, None),
         limits=limits,
         rates_at=tuple(case.rates_at),
         warnings=warnings,

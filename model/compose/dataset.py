@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.compose.parts import parts
 from coilset.model.compose.warnings import run_warnings
 from coilset.model.core.results.files.netcdf import Stack, Variable, write_netcdf
 from coilset.model.core.results.records.labels import plain
 from coilset.model.core.results.records.record import Result, Setup, Snapshot
+from coilset.model.core.section.kinds import section_points
 from coilset.model.core.section.rules import SURFACE_POINTS
-from coilset.model.physics.fatigue.usage import usage
-from coilset.model.physics.outlines.ground import section_points
 
 Variables = dict[str, Variable]
 DRAWN = 144  # points on the outline of a wire that is not round
@@ -34,6 +34,7 @@ def variables(setup: Setup, result: Result) -> Variables:
         **pressure_along_wire(setup, result),
         **_mode(result),
         **working_surface(setup, result),
+        **{name: variable for part in parts() for name, variable in part.variables(setup, result).items()},
     }
 
 
@@ -75,24 +76,17 @@ def point_state(setup: Setup, result: Result) -> Variables:
 
 
 def working_surface(setup: Setup, result: Result) -> Variables:
-    """Stress on the surface at the working states, the wire there, and the fatigue of the surface by each criterion."""
+    """Stress on the surface at the working states, and the wire there."""
     shots = [one.snapshot for one in result.working.reached if one.snapshot] if result.working else []
     if not shots:
         return {}
     surfaces, places = (Stack([getattr(shot, name) for shot in shots]) for name in ("surface_state", "x"))
     of_surface = ("element", "gauss", "angle")
-    found = {
+    return {
         "working_surface": Variable(("working", *of_surface, "component"), surfaces, {"units": "MPa"}),
         "working_position": Variable(("working", "station", "axis"), places, {"units": "mm"}),
         "working": _words("working", [shot.name for shot in shots]),
     }
-    criteria = list(usage(setup, result))
-    if criteria:
-        about = "amplitude of fully reversed stress that damages as much, over that endured; by each criterion"
-        used = np.stack([loads / endured for _, loads, endured in criteria])
-        found["fatigue_usage"] = Variable(("criterion", *of_surface), used, {"units": "1", "about": about})
-        found["criterion"] = _words("criterion", [name for name, _, _ in criteria])
-    return found
 
 
 def _mode(result: Result) -> Variables:

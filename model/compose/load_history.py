@@ -20,10 +20,12 @@ from coilset.model.compose.build import (
     build_wire,
 )
 from coilset.model.compose.contacts import build_contacts, seats_at
+from coilset.model.compose.parts import installed
 from coilset.model.compose.recorder import Recorder
 from coilset.model.core.base.agreement import max_of_ranks
 from coilset.model.core.base.entry import check_entries, shortened
 from coilset.model.core.base.errors import InputError, SolveError
+from coilset.model.core.base.package import package
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.body.state import State
 from coilset.model.core.case import Case
@@ -42,10 +44,9 @@ from coilset.model.core.material.law.law import Law
 from coilset.model.core.results.files.checkpoint import Saved
 from coilset.model.core.results.records.record import Result, Snapshot, Step
 from coilset.model.core.results.records.releases import is_released
-from coilset.model.physics.reactions.balance import imbalance
-from coilset.model.physics.stability.stability import Stability, mode_in_words
 
 log = logging.getLogger("coilset.steps")
+BALANCE = "coilset.model.physics.reactions.balance"
 FurtherContacts = Callable[[WirePoints, np.ndarray], Sequence[Contact]]
 
 
@@ -116,7 +117,8 @@ class LoadHistory:
         least_radius = float(wire.radius.min())
         self.newton = build_newton(case, self.system, least_radius)
         self.control = build_control(case, spring, self.system, wire.turns)
-        self.stability = Stability(self.newton.iteration)
+        judging = installed("physics.stability.stability")
+        self.stability = None if judging is None else judging.Stability(self.newton.iteration)
         self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
         me = weakref.proxy(self)  # that the end of an analysis frees it at once
         self.continuation.refusal, self.continuation.cause = lambda: me._passed(), lambda: me._gives_way()
@@ -146,8 +148,7 @@ class LoadHistory:
     def _gives_way(self) -> str:
         """Where and how the wire gives way most easily at the last equilibrium, in words; collective."""
         self.system.restore()
-        mode = self.stability.displacements(self.stability.weakest(self.newton.iteration.load).mode)
-        where = mode_in_words(mode, self.setup.turns) if np.isfinite(mode).all() else ""
+        where = "" if self.stability is None else self.stability.in_words(self.setup.turns)
         return "; ".join(reason for reason in (where, self._law_to_try()) if reason)
 
     def _law_to_try(self) -> str:
@@ -340,7 +341,9 @@ class LoadHistory:
 
     def imbalance(self) -> tuple[float, float]:
         """Largest imbalance over all cuts now, N and N mm; see coilset.model.physics.reactions.balance; collective."""
-        return imbalance(self.snapshot("balance"), self.system, self.control)
+        balance = package(BALANCE, "the balance of forces")
+        found: tuple[float, float] = balance.imbalance(self.snapshot("balance"), self.system, self.control)
+        return found
 
 
 def _contacts(made: object) -> list[Contact]:

@@ -4,9 +4,11 @@ import logging
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from coilset.model.compose.parts import installed
 from coilset.model.compose.warnings import step_warnings
 from coilset.model.core.base.agreement import max_of_ranks
 from coilset.model.core.base.warning import Warning
@@ -16,22 +18,18 @@ from coilset.model.core.equilibrium.path.free_ends import Change
 from coilset.model.core.equilibrium.path.program import StepTaken
 from coilset.model.core.equilibrium.system.heads import Heads
 from coilset.model.core.equilibrium.system.system import System
+from coilset.model.core.results import surface
 from coilset.model.core.results.records.record import (
     BucklingMode,
     Frame,
     Result,
-    SeatReactions,
     Setup,
     Snapshot,
     Step,
     Working,
 )
-from coilset.model.core.results.records.shape import LeastRise, clearance
+from coilset.model.core.results.records.shape import LeastRise, axis_offset, clearance
 from coilset.model.core.rod.rod import Rod
-from coilset.model.core.section import surface
-from coilset.model.physics.reactions.seat_reactions import faint_force, seat_reactions
-from coilset.model.physics.stability.buckling import State, axis_offset, buckling, is_skipped
-from coilset.model.physics.stability.stability import Stability, Weakest
 
 log = logging.getLogger("coilset.steps")
 
@@ -41,7 +39,8 @@ class Recorder:
 
     Args:
         setup: of the records.
-        rod, system, control, stability: of the analysis.
+        rod, system, control: of the analysis.
+        stability: the Stability that judges its states; None: nothing does.
         detailed: record SeatReactions and Frames, too, and log warnings as soon as a step shows them.
 
     Attributes:
@@ -49,10 +48,11 @@ class Recorder:
     """
 
     def __init__(
-        self, setup: Setup, rod: Rod, system: System, control: Heads, stability: Stability, detailed: bool
+        self, setup: Setup, rod: Rod, system: System, control: Heads, stability: Any | None, detailed: bool
     ) -> None:
         self.setup, self.rod, self.system, self.control = setup, rod, system, control
         self.layout, self._stability, self._detailed = system.line, stability, detailed
+        self._reactions = installed("physics.reactions.seat_reactions") if detailed else None
         self.result, self._least_rise = Result(), LeastRise(setup.turns, setup.spring)
         self._warned: set[str] | None = None  # names of the steps' warnings so far; None until they are requested
 
@@ -82,17 +82,21 @@ class Recorder:
         Args:
             phase: number of the phase; taken: the step that led there; loading: all phases.
         """
-        x, weakest = self.layout.gather(self.rod.x), self._weakest()
+        x = self.layout.gather(self.rod.x)
+        weakest = None if self._stability is None else self._stability.weakest_now(self.setup, self.result)
         greatest = max(self.result.greatest_force, abs(self.control.force))
         step = self._as_wrong_as_before(self.step(phase, taken, loading, x, weakest))
-        if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
-            mode = BucklingMode(
-                step.travel_mm, step.force_N, weakest.value, x, self._stability.displacements(weakest.mode)
-            )
+        lowest = self.result.mode
+        if self._stability and weakest and (lowest is None or weakest.value < lowest.eigenvalue):
+            displacements = self._stability.displacements(weakest.mode)
+            mode = BucklingMode(step.travel_mm, step.force_N, weakest.value, x, displacements)
             self.result = replace(self.result, mode=mode)
         before, seats, frames = self.result, self.result.seats, self.result.frames
         if self._detailed:
-            seats, frames = (*seats, self.seat_reactions(step.number, greatest)), (*frames, self._frame(x))
+            frames = (*frames, self._frame(x))
+        if self._reactions is not None:
+            given = (self.system, self.control, self.setup.turns, step.number, greatest, self.setup.force_line)
+            seats = (*seats, self._reactions.seat_reactions(*given))
         self.result = replace(before, steps=(*before.steps, step), seats=seats, frames=frames)
         if self._detailed:
             self._announce(before)
@@ -104,7 +108,7 @@ class Recorder:
         taken: StepTaken,
         loading: Sequence[AnyPhase],
         x: np.ndarray | None = None,
-        weakest: Weakest | None = None,
+        weakest: Any | None = None,
     ) -> Step:
         """The last equilibrium, which is not recorded yet; collective.
 
@@ -116,7 +120,7 @@ class Recorder:
         x = self.layout.gather(self.rod.x) if x is None else x
         greatest = max(self.result.greatest_force, abs(self.control.force))
         height, force, outcome = self.control.height, self.control.force, taken.outcome
-        pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
+        pulls = self.setup.ends == "seats" and force < -self.rod.faint_force(greatest)
         lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
         force_error, height_error = self._errors(outcome)
         return Step(
@@ -154,11 +158,12 @@ class Recorder:
 
     def overshoots(self) -> str | None:
         """Why the step to the trial state shall be shorter: the spring buckles in it; None if not; collective."""
+        if self._stability is None:
+            return None
         travel = self.setup.spring.free_length - self.control.trial_height
-        trial = State(travel, self.control.trial_force, self._axis_offset(self.layout.gather(self.rod.x)))
-        if is_skipped(self.result.steps, trial, self.setup.mean_diameter):
-            return "the spring buckles in this step, and shorter ones show where"
-        return None
+        offset = self._axis_offset(self.layout.gather(self.rod.x))
+        why: str | None = self._stability.overshoots(self.setup, self.result, travel, self.control.trial_force, offset)
+        return why
 
     def _announce(self, before: Result) -> None:
         """Log the warnings that the last step has brought; `before` is the result without it."""
@@ -175,11 +180,6 @@ class Recorder:
         mean = around.mean(axis=1)
         return Frame(x, self.rod.line.in_order(mean.astype(np.float32)))
 
-    def seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
-        """The seats' reactions at the last equilibrium."""
-        turns, line = self.setup.turns, self.setup.force_line
-        return seat_reactions(self.system, self.control, turns, step, greatest_force, line)
-
     def _greatest_plastic_work(self) -> float:
         """Maximum b* on the wire's surface at the last equilibrium, N/mm²; collective."""
         work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
@@ -194,7 +194,7 @@ class Recorder:
         if not stays(phase):
             return None
         before = next((step.force_N for step in reversed(self.result.steps) if not stays(step.phase)), 0.0)
-        if abs(before) <= faint_force(self.rod, self.result.greatest_force):
+        if abs(before) <= self.rod.faint_force(self.result.greatest_force):
             return None
         return 100.0 * (1.0 - force / before)
 
@@ -214,13 +214,6 @@ class Recorder:
             return step
         names = "steps_force_error_N", "steps_height_error_mm"
         return replace(step, **{name: getattr(steps[-2], name) for name in names})
-
-    def _weakest(self) -> Weakest | None:
-        """Weakest of the tangent, for a spring slender enough to buckle, until it buckles; else None; collective."""
-        setup = self.setup
-        if not setup.slender or buckling(self.result.steps, setup.mean_diameter) is not None:
-            return None
-        return self._stability.weakest(self._stability.iteration.load)
 
     def add_snapshot(self, name: str) -> None:
         """Record the spring in its current state; collective."""

@@ -18,7 +18,7 @@ from coilset.model.core.results.files.folder import (
     write_summary,
 )
 from coilset.model.core.results.records.record import Result, Setup, Snapshot
-from coilset.model.core.section.surface import component, shear
+from coilset.model.core.results.surface import component, shear
 
 if TYPE_CHECKING:  # loading what reads takes longer than a short run
     from coilset.model.core.results.files.opened import Run

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.compose.parts import parts
 from coilset.model.compose.warnings import run_warnings
-from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.package import package
 from coilset.model.core.results.records.rates import rates, tension, turning
-from coilset.model.core.results.records.record import Errors, Result, Setup, Snapshot, Step, WorkingState
+from coilset.model.core.results.records.record import Errors, Result, Setup, Snapshot, Step
 from coilset.model.core.results.records.releases import Release, releases, turned_radius
 from coilset.model.core.results.records.summary_entries import Summary
 from coilset.model.core.results.stresses import (
@@ -24,24 +25,22 @@ from coilset.model.core.results.stresses import (
     shear_inside_median,
     shear_peak,
 )
-from coilset.model.physics.fatigue.usage import fatigue
-from coilset.model.physics.stability.buckling import buckling
-from coilset.model.physics.working.working import LINE, plastic_rise, working_numbers
-from coilset.model.tools.standards import en13906
-from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.standards.limits import judged, limit_warnings
 
-CROSSINGS = tuple(name for name in LINE if name.startswith("line_"))
+# The doors to numbers that a case asks for.
+WORKING, LIMITS = "coilset.model.physics.working.working", "coilset.model.tools.limits.limits"
 
 
 def summarise(setup: Setup, result: Result) -> dict[str, Any]:
     """The Summary of a run as plain data, as in summary.json, with the numbers of working states; see `summary`."""
     made = summary(setup, result)
     plain = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(made).items()}
-    numbers = working_numbers(made.working)
-    entries = judged(setup.bounds, plain | numbers) if result.complete else ()
-    outside = [asdict(warning) for warning in limit_warnings(entries)]
-    return plain | {"limits": list(entries), "warnings": [*plain["warnings"], *outside]} | numbers
+    numbers = package(WORKING, "a working length", "working").working_numbers(made.working) if made.working else {}
+    if setup.bounds and result.complete:
+        limits = package(LIMITS, "a limit", "limits")
+        entries = limits.judged(setup.bounds, plain | numbers)
+        outside = [asdict(warning) for warning in limits.limit_warnings(entries)]
+        plain |= {"limits": list(entries), "warnings": [*plain["warnings"], *outside]}
+    return plain | numbers
 
 
 def summary(setup: Setup, result: Result) -> Summary:
@@ -51,8 +50,8 @@ def summary(setup: Setup, result: Result) -> Summary:
     release, top = freed[-1] if freed else None, result.top
     shot = release.snapshot if release else None
     inside, inside_turn = shear_inside(setup, shot) if shot else (None, None)
-    losses = load_losses(result)
-    axis, buckled = setup.spring.measured_axis, buckling(result.steps, setup.mean_diameter)
+    losses, axis = load_losses(result), setup.spring.measured_axis
+    added = {name: value for part in parts() for name, value in part.numbers(setup, result).items()}
     return Summary(
         complete=result.complete,
         free_length_before_mm=setup.spring.free_length,
@@ -84,10 +83,6 @@ def summary(setup: Setup, result: Result) -> Summary:
         **tension(setup, result, release),
         **plastic_work(setup, result),
         **estimated_errors(setup, result),
-        working=working_entries(setup, result),
-        working_set_mm=result.working.set if result.working else None,
-        fatigue=fatigue(setup, result),
-        limits=(),
         load_loss_percent=losses[-1]["loss_percent"] if losses else None,
         load_losses=losses,
         coiling_diameter_mm=setup.coiling_diameter,
@@ -99,16 +94,12 @@ def summary(setup: Setup, result: Result) -> Summary:
         failed_solves=sum(step.failed_solves for step in result.steps),
         material=setup.material,
         ends=setup.ends,
-        unstable_steps=sum(step.negative_pivots > 0 for step in result.steps),
-        buckled=buckled is not None,
-        buckling_travel_mm=buckled.travel_mm if buckled else None,
-        buckling_force_N=buckled.force_N if buckled else None,
-        buckling_travel_EN_13906_1_mm=setup.buckling_travel if isfinite(setup.buckling_travel) else None,
         elements=len(setup.turns) - 1,
         section_kind=setup.section_kind,
         section_rule=setup.rule.name,
         lift_off_max_mm=max((step.lift_off_mm for step in result.steps), default=0.0),
         warnings=tuple(run_warnings(setup, result)),
+        **added,
     )
 
 
@@ -185,64 +176,3 @@ def inner_diameter(setup: Setup, snapshot: Snapshot) -> float:
     coil = (setup.turns >= 0.0) & (setup.turns <= setup.spring.turns)
     radius = 0.5 * setup.spring.wire_diameter(setup.turns[coil])
     return 2.0 * float((np.hypot(*snapshot.x[coil, :2].T) - radius).min())
-
-
-def working_entries(setup: Setup, result: Result) -> tuple[dict[str, Any], ...]:
-    """Entries of summary.json, one for each working state."""
-    if result.working is None:
-        return ()
-    return tuple(_entry(setup, result, state) for state in result.working.states)
-
-
-def _entry(setup: Setup, result: Result, state: WorkingState) -> dict[str, Any]:
-    shot, seats = state.snapshot, state.seats
-    if shot is None or seats is None:
-        return {f"{state.kind}_wanted": state.value, "reason": state.reason}
-    stresses = nominal(setup, state.force)
-    inside, turn = shear_inside(setup, shot)
-    return {
-        f"{state.kind}_wanted": state.value,
-        "reason": "",
-        "length_mm": state.length,
-        "force_N": state.force,
-        "estimated_error": state.error,
-        "rate_N_per_mm": state.rate if np.isfinite(state.rate) else None,
-        "shear_MPa": stresses[0],
-        "corrected_shear_MPa": stresses[1],
-        "shear_inside_MPa": inside,
-        "shear_inside_turn": turn,
-        **peak_entries("shear_surface", shear_peak(setup, shot)),
-        "allowed_MPa": setup.limits.shear,
-        "allowed_of": setup.limits.shear_of if setup.limits.shear else "",
-        "safety": _safety(setup, *stresses),
-        "plastic_work_rise_N_per_mm2": plastic_rise(result, shot),
-        "bottom_centre_x_mm": _known(seats.bottom.centre_x_mm),
-        "bottom_centre_y_mm": _known(seats.bottom.centre_y_mm),
-        "top_centre_x_mm": _known(seats.top.centre_x_mm),
-        "top_centre_y_mm": _known(seats.top.centre_y_mm),
-        "side_force_N": seats.side_force_N,
-        **({} if setup.force_line is None else {f"{one}_mm": _known(getattr(seats, f"{one}_mm")) for one in CROSSINGS}),
-    }
-
-
-def _known(value: float) -> float | None:
-    return value if np.isfinite(value) else None
-
-
-def nominal(setup: Setup, force: float) -> tuple[float | None, float | None]:
-    """τ = 8 D F/(π d³) and τk = k τ of EN 13906-1, or D F/(2 W) of wire that is not round, MPa.
-
-    None of a spring that is no cylinder of one wire.
-    """
-    try:
-        cylinder = Cylinder.of(setup.spring)
-    except InputError:
-        return None, None
-    stress = en13906.stress(force, cylinder.of_stress, cylinder.D)
-    return stress, cylinder.correction * stress
-
-
-def _safety(setup: Setup, stress: float | None, corrected: float | None) -> float | None:
-    """Allowed over nominal shear stress, whichever of the two is limited."""
-    of = corrected if setup.limits.shear_of == "corrected stress" else stress
-    return setup.limits.shear / abs(of) if setup.limits.shear is not None and of else None

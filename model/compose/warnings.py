@@ -1,21 +1,19 @@
 """Warnings of a run, derived from its records, so that a resumed run gives the same ones."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import pairwise
-from math import degrees, isfinite
+from math import degrees
 
+from coilset.model.compose.parts import parts
 from coilset.model.core.base.warning import Warning
+from coilset.model.core.results import surface
 from coilset.model.core.results.records.labels import CAUSES, NUMBERS, TURNED, apart, listed
+from coilset.model.core.results.records.part import Check, place_of
 from coilset.model.core.results.records.rates import FEW, tensions
 from coilset.model.core.results.records.record import Result, Setup, Snapshot, Step
 from coilset.model.core.results.records.releases import FREE, is_turned, last_release, set_of, turned_radius
 from coilset.model.core.results.records.units import unit_of
 from coilset.model.core.results.stresses import shear_inside
-from coilset.model.core.section import surface
-from coilset.model.physics.fatigue.usage import fatigue_warnings
-from coilset.model.physics.stability.buckling import SIDEWAYS, buckling, leaning, snapped
-from coilset.model.physics.working.working import working_warnings
-from coilset.model.tools.standards.working_warnings import presetting_warning
 
 SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted sideways by 0.71 of their diameter
 # Change of the force over that of the travel, both in per cent, from which a spring counts as standing on a wall: a
@@ -28,18 +26,19 @@ NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm,
 # Of the accuracy for residual stresses: they follow the strains, which converge by an order less than heights, and a
 # diffractometer resolves some MPa.
 STRESS = 5.0
-Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
 def run_warnings(setup: Setup, result: Result) -> list[Warning]:
     """All warnings of a run, complete or not, on rank 0: about its case, its steps, and its results."""
-    found = [warning for check in FOUND for warning in check(setup, result)]
+    checks = (*FOUND, *(check for part in parts() for check in part.found))
+    found = [warning for check in checks for warning in check(setup, result)]
     return [*setup.warnings, *result.warnings, *step_warnings(setup, result), *found]
 
 
 def step_warnings(setup: Setup, result: Result) -> list[Warning]:
     """Warnings that the steps alone show, at the first step that shows them."""
-    return [warning for check in SEEN for warning in check(setup, result)]
+    checks = (*SEEN, *(check for part in parts() for check in part.seen))
+    return [warning for check in checks for warning in check(setup, result)]
 
 
 def accuracy_warning(
@@ -81,13 +80,13 @@ def _plastic_work(setup: Setup, result: Result) -> Iterator[Warning]:
     if first is not None:
         greatest = max(step.plastic_work_max_N_per_mm2 for step in result.steps)
         past = any(_work(shot) > limit for shot in result.snapshots[:1])
-        yield beyond_validity(greatest, limit, setup.material, "the start" if past else _place(first))
+        yield beyond_validity(greatest, limit, setup.material, "the start" if past else place_of(first))
 
 
 def _lift_off(setup: Setup, result: Result) -> Iterator[Warning]:
     lifted = [step for step in result.steps if step.lift_off_mm > 0.0]
     if lifted:
-        greatest, place = max(step.lift_off_mm for step in lifted), _place(lifted[0])
+        greatest, place = max(step.lift_off_mm for step in lifted), place_of(lifted[0])
         message = (
             f"the spring lifts off a seat at {place}, by up to {greatest:.4g} mm: seats cannot pull, so they carry "
             "no force there; weak springs at its tips hold it in place"
@@ -98,7 +97,7 @@ def _lift_off(setup: Setup, result: Result) -> Iterator[Warning]:
 def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
     first = next((step for step in result.steps if _rise(step) < SLIPPED), None)
     if first is not None:
-        least, place = min(_rise(step) for step in result.steps), _place(first)
+        least, place = min(_rise(step) for step in result.steps), place_of(first)
         message = (
             f"coils have slipped past each other since {place}: the rise from one to the next is {least:.2g} of that "
             "of coils stacked on each other; friction between coils (contact.friction.coils) may hold them"
@@ -119,11 +118,11 @@ def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
         if percent > WALL:
             height = accuracy * step.force_N / abs(rate)
             message = (
-                f"at {_place(step)} the force changes by {rate:.3g} N/mm: the characteristic is "
+                f"at {place_of(step)} the force changes by {rate:.3g} N/mm: the characteristic is "
                 f"nearly vertical, as coils are closed or slip, and {100 * accuracy:.2g} % of the force correspond to "
                 f"{height:.2g} mm of height"
             )
-            yield Warning("wall", _place(step), message, percent, WALL)
+            yield Warning("wall", place_of(step), message, percent, WALL)
 
 
 def _rise(step: Step) -> float:
@@ -133,68 +132,12 @@ def _rise(step: Step) -> float:
 def _penetration(setup: Setup, result: Result) -> Iterator[Warning]:
     deepest, limit = max(result.steps, key=lambda step: step.penetration_mm, default=None), setup.limits.penetration
     if deepest is not None and deepest.penetration_mm > limit:
-        depth, place = deepest.penetration_mm, _place(deepest)
+        depth, place = deepest.penetration_mm, place_of(deepest)
         message = f"coils or seats penetrate each other by {depth:.3g} mm at {place}, more than {limit:.3g} mm"
         yield Warning("penetration", place, message, depth, limit, "mm")
 
 
-def _buckled(setup: Setup, result: Result) -> Iterator[Warning]:
-    found, limit = buckling(result.steps, setup.mean_diameter), setup.buckling_travel
-    if found is not None:
-        formula = f"at {limit:.4g} mm" if isfinite(limit) else "never, as long as the wire is elastic"
-        message = (
-            f"the spring buckled at a travel of {found.travel_mm:.4g} mm and {found.force_N:.4g} N, and its axis went "
-            f"up to {found.offset_mm:.3g} mm aside (EN 13906-1: {formula}); the results beyond are for the buckled "
-            "shape"
-        )
-        place = f"travel {found.travel_mm:.4g} mm"
-        yield Warning("buckled", place, message, found.travel_mm, limit if isfinite(limit) else None, "mm")
-
-
-def _unstable(setup: Setup, result: Result) -> Iterator[Warning]:
-    unstable = [step for step in result.steps if step.negative_pivots > 0]
-    if unstable:
-        message = (
-            f"{len(unstable)} steps ended in unstable equilibria with no stable one nearby: there are several "
-            "branches, and smaller steps may find another"
-        )
-        yield Warning("unstable", _place(unstable[0]), message, len(unstable), 0.0)
-
-
-def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
-    before = [0.0, *(step.force_N for step in result.steps)]
-    snaps = [
-        (force, step) for force, step in zip(before, result.steps, strict=False) if snapped(step, setup.mean_diameter)
-    ]
-    if snaps:
-        force, step = max(snaps, key=lambda snap: snap[1].released_energy_Nmm)
-        times = "" if len(snaps) == 1 else f", {len(snaps)} times in all"
-        message = (
-            f"the spring snapped through at a travel of {step.travel_mm:.5g} mm, from {force:.5g} N to "
-            f"{step.force_N:.5g} N, and released {step.released_energy_Nmm:.2g} N mm{times}: several branches exist, "
-            "and the one reached by slow snap-through was kept"
-        )
-        yield Warning("snapped", _place(step), message, step.released_energy_Nmm, 0.0, "N mm")
-
-
-def _place(step: Step) -> str:
-    return f"step {step.number}, travel {step.travel_mm:.4g} mm"
-
-
 # ---- from what was found ---------------------------------------------------------------------------------------------
-
-
-def _leans(setup: Setup, result: Result) -> Iterator[Warning]:
-    if setup.spring.axis is not None or is_turned(setup, result.steps):  # drawn so, or pushed aside by its arms
-        return
-    far = leaning(result.steps, setup.mean_diameter)
-    if far is not None:
-        offset, place = far.axis_offset_mm, _place(far)
-        message = (
-            f"the spring leans without buckling: its axis is up to {offset:.3g} mm aside, at a travel of "
-            f"{far.travel_mm:.4g} mm, {100.0 * offset / setup.mean_diameter:.2g} % of its mean diameter"
-        )
-        yield Warning("leans", place, message, offset, SIDEWAYS * setup.mean_diameter, "mm")
 
 
 def _strength(setup: Setup, result: Result) -> Iterator[Warning]:
@@ -229,12 +172,12 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     if top.steps_force_error_N is None:
         if not abs(top.force_N) <= FREE * result.rate * setup.spring.free_length:  # also where the rate is not known
             message = (
-                f"the step-size error of the maximum force could not be estimated ({_place(top)}); "
+                f"the step-size error of the maximum force could not be estimated ({place_of(top)}); "
                 "compare the force with that of smaller steps"
             )
-            yield Warning("unknown error", _place(top), message, None, required)
+            yield Warning("unknown error", place_of(top), message, None, required)
         return
-    worst, place = required * abs(top.steps_force_error_N) / allowed_force(setup, result), _place(top)
+    worst, place = required * abs(top.steps_force_error_N) / allowed_force(setup, result), place_of(top)
     of = (f"the {force_in_words(setup, result)}", "")
     release = last_release(setup, result)
     error = None if release is None else release.set_error
@@ -400,25 +343,5 @@ def _tension(setup: Setup, result: Result) -> Iterator[Warning]:
             yield Warning("initial tension", when, message, held.points, FEW)
 
 
-def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
-    """Of a program that goes to block and comes back, if the spring sets: an elastic spring is not preset."""
-    release, spring = last_release(setup, result), setup.spring
-    if "block" not in setup.phases or release is None or release.set <= NOTICED * spring.free_length:
-        return
-    warning = presetting_warning(release.set, spring.free_length - spring.block_height)
-    if warning is not None:
-        yield warning
-
-
-SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
-FOUND: tuple[Check, ...] = (
-    _strength,
-    _creep,
-    _errors,
-    _presetting,
-    _longer,
-    _leans,
-    _tension,
-    working_warnings,
-    fatigue_warnings,
-)
+SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration)
+FOUND: tuple[Check, ...] = (_strength, _creep, _errors, _longer, _tension)

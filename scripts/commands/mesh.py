@@ -12,9 +12,9 @@ from coilset.model.core.case import UnloadedCase, read_case
 from coilset.model.core.case.loading import is_pressed, is_turned
 from coilset.model.core.case.material import case_elastic, case_law
 from coilset.model.core.results.files.folder import DRAWN, make, refuse_to_replace, whole
+from coilset.model.tools.limits.spring_warnings import spring_warnings
+from coilset.model.tools.sheet.spring_data import spring_data
 from coilset.model.tools.standards.buckling import seating_of
-from coilset.model.tools.standards.spring_data import spring_data
-from coilset.model.tools.standards.spring_warnings import spring_warnings
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
 

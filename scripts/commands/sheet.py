@@ -20,16 +20,16 @@ from coilset.model.core.results.files.folder import make, refuse_to_replace
 from coilset.model.tools.document.words import Language, Words
 from coilset.model.tools.figures.panels.goodman import goodman as diagram_of
 from coilset.model.tools.figures.png import write_png
+from coilset.model.tools.limits.case_warnings import sheet_warnings, warm_warnings
+from coilset.model.tools.limits.spring_warnings import spring_warnings
+from coilset.model.tools.limits.working_warnings import presetting_warning
 from coilset.model.tools.sheet import from_results
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import Row, sections
+from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards import goodman
 from coilset.model.tools.standards.buckling import seating_of
-from coilset.model.tools.standards.case_sheet import case_sheet
-from coilset.model.tools.standards.case_warnings import sheet_warnings, warm_warnings
 from coilset.model.tools.standards.en15800 import GRADES
-from coilset.model.tools.standards.sheet import Sheet
-from coilset.model.tools.standards.spring_warnings import spring_warnings
-from coilset.model.tools.standards.working_warnings import presetting_warning
 from coilset.model.tools.wires import names, wire
 from coilset.model.tools.wires.library import files, own_folder
 from coilset.model.tools.wires.wire_file import Surface

@@ -15,7 +15,7 @@ from coilset.model.core.results.files.folder import clear, prepare, write_histor
 from coilset.model.core.results.quantities import quantities
 from coilset.model.core.results.records.provenance import origin
 from coilset.model.physics.slice.analysis import ACROSS, SliceAnalysis, SliceStep
-from coilset.model.tools.standards.case_warnings import case_warnings
+from coilset.model.tools.limits.case_warnings import case_warnings
 from coilset.model.tools.studies.slice_summary import summarise
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.progress import HEAD, step_row

@@ -8,7 +8,7 @@ from coilset.model.core.case import check, read_case
 from coilset.model.core.case.loading import is_pressed
 from coilset.model.core.case.targets import check_targets, closing_force
 from coilset.model.physics.slice.analysis import SliceAnalysis
-from coilset.model.tools.standards.case_sheet import case_sheet
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.scripts.commands.solve import solve
 
 G = 84000.0

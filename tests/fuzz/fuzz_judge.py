@@ -34,9 +34,9 @@ from coilset.model.tools.identification.elastic_part import TESTER, check_elasti
 from coilset.model.tools.identification.experiments import read_test
 from coilset.model.tools.identification.programs import Program
 from coilset.model.tools.identification.relaxation_tests import read_relaxation
+from coilset.model.tools.limits.case_warnings import case_warnings
 from coilset.model.tools.nest.file import NestFile, read_nest
 from coilset.model.tools.spring_fit.pressing import read_pressing
-from coilset.model.tools.standards.case_warnings import case_warnings
 from coilset.model.tools.sweep.journal import read_records
 from coilset.model.tools.sweep.plan import Plan
 from coilset.model.tools.sweep.spec import SweepSpec

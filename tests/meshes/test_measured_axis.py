@@ -9,7 +9,7 @@ from coilset.model.compose.analysis import Analysis
 from coilset.model.compose.summary import summarise
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import check
-from coilset.model.tools.standards.spring_warnings import spring_warnings
+from coilset.model.tools.limits.spring_warnings import spring_warnings
 
 D, WIRE, TURNS, PITCH = 40.0, 5.0, 6.0, 12.0
 BLOCK = 7 * WIRE  # of 6 open turns

@@ -7,7 +7,8 @@ import meshio
 import numpy as np
 import pytest
 
-from coilset.meshes.drawings import drawing, view
+from coilset.meshes.drawings import view
+from coilset.meshes.drawings.drawing import drawing
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.core.base.errors import CoilsetError, InputError
 from coilset.model.core.case import read_case

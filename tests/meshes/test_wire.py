@@ -5,10 +5,10 @@ import pytest
 
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import check
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import sections
-from coilset.model.tools.standards.case_sheet import case_sheet
+from coilset.model.tools.sheet.spring_data import spring_data
 from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.standards.spring_data import spring_data
 
 OVAL = {"oval": {"width": 4.0, "height": 5.0}}
 RECTANGLE = {"rectangle": {"width": 6.0, "height": 3.0, "corner": 0.5}}

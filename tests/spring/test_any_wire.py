@@ -8,7 +8,7 @@ import pytest
 from coilset.model.compose.analysis import Analysis
 from coilset.model.compose.summary import summarise
 from coilset.model.core.case import check, read_case
-from coilset.model.tools.standards.case_sheet import case_sheet
+from coilset.model.tools.sheet.case_sheet import case_sheet
 
 SPRINGS = Path(__file__).parents[2] / "examples" / "springs"
 SMALL = ["mesh.elements_per_turn=8", "accuracy=none"]

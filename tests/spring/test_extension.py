@@ -9,9 +9,9 @@ from coilset.model.compose.summary import summarise
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import check, read_case
 from coilset.model.physics.uniform_coil.estimate import estimate
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import sections
 from coilset.model.tools.standards import en13906
-from coilset.model.tools.standards.case_sheet import case_sheet
 from coilset.verification.spring_references.coil_by_coil import shear_curve
 
 WIRE, MEAN, TURNS, TENSION = 3.0, 30.0, 8.0, 25.0

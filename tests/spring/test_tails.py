@@ -11,7 +11,7 @@ from coilset.model.compose.analysis import Analysis
 from coilset.model.compose.summary import summarise
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import check
-from coilset.model.core.section import surface
+from coilset.model.core.results import surface
 from coilset.model.tools.standards import en13906
 from coilset.model.tools.standards.rate import OnPoint, tails_compliance
 

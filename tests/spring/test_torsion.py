@@ -14,9 +14,9 @@ from coilset.model.core.case import check
 from coilset.model.core.contact.base import TrialPositions
 from coilset.model.core.contact.curve import CentreLine
 from coilset.model.physics.guides.hold import Guide
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import sections
 from coilset.model.tools.standards import en13906
-from coilset.model.tools.standards.case_sheet import case_sheet
 from coilset.scripts.terminal.progress import Lines
 from coilset.verification.references.bent_wire import BentWire
 

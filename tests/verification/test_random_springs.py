@@ -6,7 +6,7 @@ from coilset.model.core.case import check
 from coilset.model.core.case.material import case_law
 from coilset.model.core.case.targets import check_targets
 from coilset.model.core.material import library
-from coilset.model.tools.standards.case_warnings import case_warnings
+from coilset.model.tools.limits.case_warnings import case_warnings
 from coilset.verification.random_springs.springs import FAMILIES, features, random_spring
 
 NUMBERS = range(84)

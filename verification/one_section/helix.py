@@ -4,9 +4,9 @@ import numpy as np
 
 from coilset.meshes.springs.placement import straight
 from coilset.model.core.material.law.law import Law
+from coilset.model.core.results.surface import component, nominal_shear
 from coilset.model.core.section.kinds import make_sections
 from coilset.model.core.section.rules import DiskRule, polar
-from coilset.model.core.section.surface import component, nominal_shear
 
 WIRE = 5.0  # mm
 

@@ -5,9 +5,9 @@ import numpy as np
 from coilset.meshes.springs.placement import straight
 from coilset.model.core.base.errors import SolveError
 from coilset.model.core.material.law.law import Law
+from coilset.model.core.results.surface import component
 from coilset.model.core.section.kinds import make_sections
 from coilset.model.core.section.rules import DiskRule
-from coilset.model.core.section.surface import component
 from coilset.model.physics.uniform_coil.section import RISE, Coil, derivatives, strains
 
 STRAINS = np.array([0, 2, 3, 5])  # Γ₁, Γ₃, K₁, K₃ among ε, γ12, γ13, φ′, κ2, κ3

@@ -13,7 +13,7 @@ from coilset.model.compose.analysis import Analysis
 from coilset.model.core.case import Case
 from coilset.model.core.material import library
 from coilset.model.core.results.records.record import Snapshot
-from coilset.model.core.section.surface import component
+from coilset.model.core.results.surface import component
 from coilset.model.physics.solid.points import MaterialPoints
 from coilset.model.physics.solid.problem import SolidProblem
 from coilset.model.physics.solid.program import AxialProgram, Station

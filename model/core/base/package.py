@@ -22,14 +22,33 @@ def package(module: str, purpose: str, place: str = "") -> ModuleType:
         place: entry of the case that does.
 
     Raises:
-        InputError: if this installation does not have it.
+        InputError: if this installation does not have it, or not what it is built on.
     """
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
-        if error.name is None or not f"{module}.".startswith(f"{error.name}."):
-            raise  # one of its own imports
-        raise InputError(f"{purpose} needs the package {module}, which this installation lacks", place) from None
+        lacked = _lacked(error)
+        raise InputError(f"{purpose} needs the package {lacked}, which this installation lacks", place) from None
+
+
+def optional(module: str) -> ModuleType | None:
+    """A module of an optional package; None if this installation does not have it, or not what it is built on."""
+    try:
+        return importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        _lacked(error)
+        return None
+
+
+def _lacked(error: ModuleNotFoundError) -> str:
+    """The package that could not be imported.
+
+    Raises:
+        ModuleNotFoundError: it is none of coilset's own.
+    """
+    if error.name is None or not error.name.startswith("coilset."):
+        raise error
+    return error.name
 
 
 @dataclass(frozen=True)

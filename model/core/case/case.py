@@ -202,7 +202,7 @@ def _refuse_constants(data: Any) -> None:
     for name in (f"{group}.{name}" for group, given in groups.items() if isinstance(given, dict) for name in given):
         where = "contact.penetration_limit, in wire diameters" if name == "newton.free_penetration" else ""
         if name in CONSTANTS:
-            where = f"the constant {name.partition('.')[2].upper()} of model/core/equilibrium/{CONSTANTS[name]}"
+            where = f"the constant {name.partition('.')[2].upper()} of model/{CONSTANTS[name]}"
         if where:
             problem = "this is no longer an entry, but {where}"
             raise PydanticCustomError("unknown_entry", problem, {"entry": name, "where": where})
@@ -362,7 +362,7 @@ class Case(Strict):
     ] = None
     limits: Annotated[
         Any,
-        Entry("coilset.model.tools.standards.limit_entries:Limits"),
+        Entry("coilset.model.tools.limits.limit_entries:Limits"),
         Field(
             description="between which values results must be: name, such as free_length or force_at_37, → "
             "[low, high], {nominal, tolerance}, or EN 15800 grade 2"

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.core.results import surface
 from coilset.model.core.results.records.record import Result, Setup, Snapshot
-from coilset.model.core.section import surface
 
 SAME_TURN = 1e-6  # turns: sections at the end of one element and at the start of the next one are nearer
 

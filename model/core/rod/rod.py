@@ -35,6 +35,8 @@ from coilset.model.core.section.rules import DiskRule
 
 DIFFERENCE = 1e-4  # of a step, of which the strains' rate is the difference
 EPSILON = float(np.finfo(float).eps)
+ROUNDING = 2e-13  # axial forces below this part of E A are rounding, whatever came before
+FAINT = 1e-6  # axial forces below this part of the largest one so far have no centre and load no turns
 
 
 class Rod(Body):
@@ -324,3 +326,7 @@ class Rod(Body):
         size = sum_of_ranks(self.comm, len(increments))
         stiffest = max(greatest * self.constraint_weight, self._bending_stiffness)
         return max(EPSILON * math.sqrt(size) * stiffest, 1e-14 * self.axial_force)
+
+    def faint_force(self, greatest_force: float) -> float:
+        """Axial force below which it counts as zero, N; `greatest_force` is the magnitude of the largest one so far."""
+        return max(FAINT * greatest_force, ROUNDING * self.axial_force)

@@ -11,7 +11,7 @@ from coilset.meshes.springs.placement import Placement
 from coilset.model.core.base.package import package
 from coilset.model.core.material.law.law import Law
 from coilset.model.core.runtime.threads import Threads
-from coilset.model.core.section.fibres import FibreSections
+from coilset.model.core.section.fibres import OUTLINES, FibreSections
 from coilset.model.core.section.rules import DiskRule
 from coilset.model.core.section.sections import Sections
 
@@ -43,3 +43,18 @@ def make_sections(
         found: Sections = sections(law, parameters, rule, radius, placement, temperature, degree, threads)
         return found
     return FibreSections(law, parameters, rule, radius, placement, kind == "curved", temperature, threads)
+
+
+def section_points(rule: DiskRule, placement: Placement) -> tuple[np.ndarray, np.ndarray]:
+    """Points of all sections in wire radii, (n, g, points, 2), and their shares of the disk, (n, g, points).
+
+    Raises:
+        InputError: if the package of wire that is ground or not round is missing.
+    """
+    if rule.outline is not None or placement.is_cut:
+        outlines = package(OUTLINES, "wire that is ground or not round")
+        points: tuple[np.ndarray, np.ndarray] = outlines.section_points(rule, placement)
+        return points
+    sections = placement.curvature.shape
+    places = np.broadcast_to(rule.points, (*sections, *rule.points.shape)).copy()
+    return places, np.broadcast_to(rule.weights, (*sections, len(rule))).copy()

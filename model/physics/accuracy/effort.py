@@ -1,11 +1,15 @@
-"""Cost of a run, estimated before it begins from the cost of an element measured in docs/scaling.md."""
+"""What can be said of a run before it begins: its cost, by that of an element measured in docs/scaling.md."""
 
 import os
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
+from coilset.meshes.springs.geometry import Spring
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.base.warning import Warning
+from coilset.model.physics.accuracy.contact_fineness import coarse_mesh_warnings
 
 # Measured with 96 points per section, docs/scaling.md: 16.5 of 25.7 µs for the law, 10.8 of 26 kB for the points and
 # their finer path, which tells the error of the steps.
@@ -77,3 +81,19 @@ def machine_memory() -> float:
         return min(present, float(CGROUP.read_text()))  # "max" without a limit
     except (OSError, ValueError):
         return present
+
+
+def checked(spring: Spring, turns: np.ndarray, points: int, steps: int, estimated: bool) -> tuple[Warning, ...]:
+    """Warnings about the mesh and about the effort.
+
+    Args:
+        spring: Spring.
+        turns: of the stations, shape (n,).
+        points, steps, estimated: as in `Effort.of`.
+
+    Raises:
+        InputError: if the run needs more memory than there is.
+    """
+    effort = Effort.of(len(turns) - 1, points, steps, estimated)
+    effort.check_memory(machine_memory())
+    return (*coarse_mesh_warnings(spring, turns), *effort.warnings())

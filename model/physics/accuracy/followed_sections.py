@@ -21,10 +21,10 @@ from mpi4py import MPI
 from coilset.model.core.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.core.base.errors import CoilsetError
 from coilset.model.core.base.package import package
+from coilset.model.core.results.surface import Inside
 from coilset.model.core.rod.rod import Rod
 from coilset.model.core.section.kinds import make_sections
 from coilset.model.core.section.rules import DiskRule
-from coilset.model.core.section.surface import Inside
 
 PAST = "coilset.model.physics.manufacture.initial_state"  # the door to what manufacture leaves in the wire
 UPDATES = 2  # of a section in a step, to find its strains

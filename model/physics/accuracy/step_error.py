@@ -19,8 +19,8 @@ from coilset.model.core.equilibrium.path.guess import Guess
 from coilset.model.core.equilibrium.path.step_sizes import Path, Position
 from coilset.model.core.equilibrium.settings import StepControl
 from coilset.model.core.equilibrium.system.heads import Heads
+from coilset.model.core.results import surface
 from coilset.model.core.rod.section_states import CLOCKS
-from coilset.model.core.section import surface
 from coilset.model.physics.accuracy.finer_path import FinerPath
 from coilset.model.physics.accuracy.next_touch import CROSSING, NEAR, SHORT, NextTouch
 

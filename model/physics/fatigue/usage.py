@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from coilset.model.core.base.warning import Warning
+from coilset.model.core.results import surface
 from coilset.model.core.results.records.record import Result, Setup, Working, WorkingState
-from coilset.model.core.section import surface
 from coilset.model.physics.fatigue.cycle import Cycle, tensors
 from coilset.model.physics.fatigue.strength import Strength
 

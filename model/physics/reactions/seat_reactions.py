@@ -18,9 +18,7 @@ from coilset.model.core.rotations.kernels import exponential
 from coilset.model.core.runtime.kernels import njit
 from coilset.model.physics.reactions.resultants import Wrench, bearing_on_seat, pressures_on, turns_without
 
-ROUNDING = 2e-13  # axial forces below this part of E A are rounding, whatever came before
 ON_LINE = tuple(item.name for item in fields(SeatReactions) if item.name.startswith(("line_", "damper_")))
-FAINT = 1e-6  # axial forces below this part of the largest one so far have no centre and load no turns
 
 
 Parts = Sequence[tuple[Contact, Contribution]]
@@ -50,7 +48,7 @@ def seat_reactions(
     """
     observer = _Observer(system, control)
     rod, pressure = observer.layout.rod, pressures(observer.on_wire)
-    faint = faint_force(rod, greatest_force)
+    faint = rod.faint_force(greatest_force)
     wrenches = {end: observer.wrench(end) for end in ENDS}
     bottom, top = (observer.reaction(end, wrenches[end], faint) for end in ENDS)
     active = active_turns(rod, turns, control.force) if abs(control.force) > faint else np.nan
@@ -99,11 +97,6 @@ def _friction(force: np.ndarray, moment: np.ndarray, axis: np.ndarray, line: For
     side = force - (force @ axis) * axis
     second = np.cross(axis, moment - a * np.cross(axis, side)) / (b - a)
     return line.friction * float(np.linalg.norm(side + second) + np.linalg.norm(second))
-
-
-def faint_force(rod: Rod, greatest_force: float) -> float:
-    """Axial force below which it counts as zero, N; `greatest_force` is the magnitude of the largest one so far."""
-    return max(FAINT * greatest_force, ROUNDING * rod.axial_force)
 
 
 class _Observer:

@@ -22,6 +22,8 @@ from coilset.model.core.equilibrium.newton.iteration import Iteration
 from coilset.model.core.equilibrium.system.factors import lu, negative_pivots
 from coilset.model.core.equilibrium.system.layout import LineLayout
 from coilset.model.core.equilibrium.system.load import Load
+from coilset.model.core.results.records.record import Result, Setup
+from coilset.model.physics.stability.buckling import State, buckling, is_skipped
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
 ITERATIONS = 12
@@ -91,6 +93,26 @@ class Stability:
         mode.scale(1.0 / self.greatest_displacement(mode))
         return Weakest(negative, float(values.min()), mode)
 
+    def weakest_now(self, setup: Setup, result: Result) -> Weakest | None:
+        """The weakest mode at the last equilibrium, for a spring slender enough to buckle, until it buckles, else None;
+        collective.
+
+        Args:
+            setup, result: records of the run so far.
+        """
+        if not setup.slender or buckling(result.steps, setup.mean_diameter) is not None:
+            return None
+        return self.weakest(self.iteration.load)
+
+    def in_words(self, turns: np.ndarray) -> str:
+        """Where and how the wire gives way most easily at the last evaluation, empty if nothing is found; collective.
+
+        Args:
+            turns: of the stations, shape (n,).
+        """
+        mode = self.displacements(self.weakest(self.iteration.load).mode)
+        return mode_in_words(mode, turns) if np.isfinite(mode).all() else ""
+
     def _nearest(self, matrix: PETSc.Mat, factors: PETSc.PC, scale: PETSc.Vec) -> tuple[np.ndarray, list[PETSc.Vec]]:
         """Eigenvalues of the tangent that are nearest to zero, or to the shift of the factors, and their modes."""
         block, right = self._start_block(), scale.duplicate()
@@ -104,6 +126,18 @@ class Stability:
             _destroy(*before)
         _destroy(right)
         return values, block
+
+    @staticmethod
+    def overshoots(setup: Setup, result: Result, travel: float, force: float, offset: float) -> str | None:
+        """Why a step shall be shorter: the spring buckles in it; None if not.
+
+        Args:
+            setup, result: records of the run so far.
+            travel, force, offset: of the trial state, mm and N.
+        """
+        if is_skipped(result.steps, State(travel, force, offset), setup.mean_diameter):
+            return "the spring buckles in this step, and shorter ones show where"
+        return None
 
     # ---- matrix ----------------------------------------------------------------------------------------------------
 

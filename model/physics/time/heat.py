@@ -17,7 +17,7 @@ from coilset.model.core.material.law.law import Law
 from coilset.model.core.rod.rod import Rod
 from coilset.model.core.rod.section_states import CLOCKS
 from coilset.model.core.section.fibres import FibreSections
-from coilset.model.physics.outlines.ground import section_points
+from coilset.model.core.section.kinds import section_points
 from coilset.model.physics.time.creep.law import HOURS, TEMPERATURE
 from coilset.model.physics.time.heat_equation import HeatConstants, HeatEquation
 

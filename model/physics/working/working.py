@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 from coilset.model.core.base.warning import Warning
+from coilset.model.core.results import surface
 from coilset.model.core.results.records.record import Result, Setup, Snapshot
-from coilset.model.core.section import surface
 
 FLOWS = 1e-5  # of the free length: a further set by less is not noticed
 LINE = {f"line_{plane}_{axis}": "mm" for plane in ("lower", "upper") for axis in "xy"} | {"side_force": "N"}

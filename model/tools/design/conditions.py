@@ -11,7 +11,7 @@ from coilset.model.core.case.material import case_elastic, case_law
 from coilset.model.core.results.records.units import unit_of, words_and_unit
 from coilset.model.physics.working.working import is_working_number, place_of
 from coilset.model.tools.design.file import Conditions, DesignFile, Limits
-from coilset.model.tools.standards.limits import case_limits
+from coilset.model.tools.limits.limits import case_limits
 
 GROUP = "such_that."  # before the names of conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so

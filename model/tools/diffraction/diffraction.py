@@ -22,7 +22,7 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 from scipy.spatial import ConvexHull
 
 from coilset.model.core.base.errors import InputError
-from coilset.model.core.section.surface import Inside
+from coilset.model.core.results.surface import Inside
 
 DIRECTIONS: Mapping[str, float] = {"along": 0.0, "+45°": 45.0, "around": 90.0, "-45°": -45.0}
 ROUND = 0.98  # least radius of a round section over its greatest

@@ -17,10 +17,10 @@ from coilset.model.tools.document.entries import SheetSpec
 from coilset.model.tools.document.view import Drawing, Level, view
 from coilset.model.tools.document.words import Words
 from coilset.model.tools.figures.panels.panel import Panel
+from coilset.model.tools.limits.limits import case_limits
 from coilset.model.tools.sheet.rows import Row, sections
+from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards import en15800
-from coilset.model.tools.standards.limits import case_limits
-from coilset.model.tools.standards.sheet import Sheet
 
 MOST_LEVELS = 6  # lengths on the drawing; the table has all
 DRAWN = {"free_length_after_mm": "free length L0", "rate_30_70_after_N_per_mm": "rate R"}

@@ -10,7 +10,7 @@ from coilset.model.core.results.records.record import Limit
 from coilset.model.physics.working.working import number_name
 from coilset.model.tools.figures.panels.goodman import goodman
 from coilset.model.tools.figures.panels.panel import GREY, Panel, Trace, axis, curve
-from coilset.model.tools.standards.sheet import Sheet
+from coilset.model.tools.sheet.sheet import Sheet
 
 POINTS = 200  # of the formula's curve
 MARK: Trace = {"size": 8, "symbol": "square", "color": "#009e73"}

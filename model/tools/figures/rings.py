@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from coilset.model.core.section.rules import rim
-from coilset.model.core.section.surface import Inside
+from coilset.model.core.results.surface import Inside, directions
 
 ROUND = 96  # points of a ring in a picture
 
@@ -22,7 +21,7 @@ class FilledSection:
     def __init__(self, points: np.ndarray, corners: np.ndarray | None = None) -> None:
         inner, self._carry = rings(points)
         self._angles = None if corners is None else np.arctan2(*corners[:-1].T[::-1]) % (2.0 * np.pi)
-        self.places = np.concatenate([inner, rim(ROUND) if corners is None else corners[:-1]])
+        self.places = np.concatenate([inner, np.stack(directions(ROUND), axis=-1) if corners is None else corners[:-1]])
 
     def values(self, at_points: np.ndarray, on_surface: np.ndarray) -> np.ndarray:
         """Values at the places, shape (m,), from those at the points and at equal angles on the surface."""

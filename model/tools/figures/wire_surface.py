@@ -6,12 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from coilset.model.core.results import surface as surface_values
 from coilset.model.core.results.files.opened import Run
 from coilset.model.core.results.records.labels import plain
-from coilset.model.core.rod.elements import THESIS
+from coilset.model.core.results.surface import Inside
 from coilset.model.core.rotations.triads import chord_triads
-from coilset.model.core.section import surface as surface_values
-from coilset.model.core.section.surface import Inside
 
 STRAIGHT = 0.25  # of the coil's curvature: below it a piece of a hook or arm is straight
 
@@ -65,8 +64,7 @@ def loading_stress(run: Run) -> tuple[str, np.ndarray]:
 def section_turns(run: Run) -> np.ndarray:
     """Turns of the sections at which stress is known, shape (elements, sections)."""
     turn = run.data["turn"].values
-    xi = run.data["abscissa"].values if "abscissa" in run.data else THESIS.xi  # of all earlier runs
-    return turn[:-1, None] + np.diff(turn)[:, None] * xi
+    return turn[:-1, None] + np.diff(turn)[:, None] * run.data["abscissa"].values
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,7 @@ from coilset.model.core.base.agreement import sum_of_ranks
 from coilset.model.core.base.errors import CoilsetError
 from coilset.model.core.case import Case
 from coilset.model.core.case.case import SectionSpec
+from coilset.model.core.case.warping import keeps_elastic_warping, warping_can_be_estimated
 from coilset.model.core.equilibrium.system.layout import LineLayout
 from coilset.model.core.results.records.record import Errors, Result, RunErrors, Setup, Step, Working
 from coilset.model.core.results.records.releases import FREE, Release, last_release, set_of, turned_radius
@@ -44,7 +45,6 @@ from coilset.model.core.results.stresses import change_of_sign, jump, shear_insi
 from coilset.model.core.section.rules import polar
 from coilset.model.physics.accuracy.followed_sections import FollowedSections
 from coilset.model.tools.further_runs.working import working_states
-from coilset.model.tools.standards.case_warnings import keeps_elastic_warping, warping_can_be_estimated
 
 log = logging.getLogger("coilset.steps")
 

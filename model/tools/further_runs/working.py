@@ -17,7 +17,7 @@ from coilset.model.core.case.phases import Phase, Target
 from coilset.model.core.equilibrium.path.program import LoadProgram
 from coilset.model.core.results.records.record import Step, Working, WorkingState
 from coilset.model.core.results.records.releases import FREE
-from coilset.model.physics.reactions.seat_reactions import faint_force
+from coilset.model.physics.reactions.seat_reactions import seat_reactions
 
 log = logging.getLogger("coilset.steps")
 FEW = 4  # equal steps to a state, where the errors of automatic ones are not estimated
@@ -134,10 +134,11 @@ def _state(history: LoadHistory, way: _Way, target: Target, free_height: float) 
         return replace(state, reason=f"no equilibrium was found ({failure})")
     control, recorder = history.control, history.recorder
     force, greatest = control.force, max(history.result.greatest_force, abs(control.force))
-    if on_seats and force < -faint_force(history.rod, greatest):
+    if on_seats and force < -history.rod.faint_force(greatest):
         return replace(state, reason="the spring is free there, and seats cannot pull")
     shot = replace(recorder.snapshot(f"working, {state.label}"), force=force)
-    seats = recorder.seat_reactions(len(history.result.steps), greatest)
+    turns, line, steps = history.setup.turns, history.setup.force_line, len(history.result.steps)
+    seats = seat_reactions(history.system, control, turns, steps, greatest, line)
     return replace(state, rate=_rate(history), step=way.last, seats=seats, snapshot=shot)
 
 

@@ -7,8 +7,8 @@ from coilset.model.core.case import check
 from coilset.model.core.results.files.opened import Run
 from coilset.model.core.results.records.labels import plain
 from coilset.model.tools.sheet import from_results
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import Row, sections
-from coilset.model.tools.standards.case_sheet import case_sheet
 
 
 def maker_sheet(run: Run) -> list[tuple[str, list[dict[str, Any]]]]:

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import degrees, isfinite, sqrt
 
+from coilset.model.tools.sheet.sheet import AT_BLOCK, Sheet
 from coilset.model.tools.standards import en13906, en15800
 from coilset.model.tools.standards.rate import pitch_compliance
-from coilset.model.tools.standards.sheet import AT_BLOCK, Sheet
 from coilset.model.tools.wires.law import poisson_ratio
 
 DERIVED, TWO, ONE, GIVEN = "derived", "two sources", "one source", "given"

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from coilset.model.core.base.style import STYLE
 from coilset.model.core.results.files.folder import subfolder, write_table
 from coilset.model.core.results.records.labels import plain
-from coilset.model.core.section.surface import Inside
+from coilset.model.core.results.surface import Inside
 from coilset.model.physics.vibration.modes import Modes
 from coilset.model.tools.figures.png import save
 from coilset.model.tools.figures.series import PER_ELEMENT, tube_cells

@@ -10,7 +10,7 @@ from coilset.model.core.results.records.summary_entries import UNSEEN
 from coilset.model.physics.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.physics.slice.watch import shear
 from coilset.model.physics.solid.continuum import mises
-from coilset.model.tools.standards.case_warnings import case_warnings
+from coilset.model.tools.limits.case_warnings import case_warnings
 
 
 def summarise(analysis: SliceAnalysis) -> dict:

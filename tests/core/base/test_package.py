@@ -11,7 +11,7 @@ from coilset.model.core.base.package import Entry
 from coilset.model.core.base.strict_entries import Strict
 
 TAILS = "coilset.meshes.tails"
-LIMIT = "coilset.model.tools.standards.limit_entries:Limits"
+LIMIT = "coilset.model.tools.limits.limit_entries:Limits"
 
 
 def group(form):

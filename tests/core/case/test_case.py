@@ -127,10 +127,9 @@ def test_what_is_a_constant_now_is_refused_with_its_place():
         group, _, entry = name.partition(".")
         found = problem(raw(solver={"control": {group: {entry: 0.5}}}))
         assert found == (
-            f"solver.control.{name}: this is no longer an entry, but the constant {entry.upper()} "
-            f"of model/core/equilibrium/{file}"
+            f"solver.control.{name}: this is no longer an entry, but the constant {entry.upper()} of model/{file}"
         )
-        module = importlib.import_module("coilset.model.core.equilibrium." + file.removesuffix(".py").replace("/", "."))
+        module = importlib.import_module("coilset.model." + file.removesuffix(".py").replace("/", "."))
         assert getattr(module, entry.upper()) > 0.0
     found = problem(raw(solver={"control": {"newton": {"free_penetration": 0.1}}}))
     assert found.startswith("solver.control.newton.free_penetration: this is no longer an entry, but contact.penetrati")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.core import equilibrium
+from coilset import model
 from coilset.verification.cases.contact.contact_meshes import FAILED, IN_PARTS, SOLVED, press
 from coilset.verification.spring_references.coil_by_coil import CoilByCoil
 
@@ -21,5 +21,5 @@ def test_cone_reaches_block_and_comes_back_without_a_failed_solve():
 
 def test_failed_solves_are_found_by_the_words_of_the_log():
     """Or none would ever be counted."""
-    sources = "".join(path.read_text() for path in Path(equilibrium.__path__[0]).rglob("*.py"))
+    sources = "".join(path.read_text() for path in Path(model.__path__[0]).rglob("*.py"))
     assert [words for words in (*FAILED, *SOLVED, *IN_PARTS) if words not in sources] == []

@@ -15,11 +15,11 @@ from coilset.model.compose.warnings import accuracy_warning, run_warnings, step_
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.case import read_case
 from coilset.model.core.case.material import case_law
+from coilset.model.core.results import surface
 from coilset.model.core.results.files.checkpoint import Checkpoint
 from coilset.model.core.results.records.record import Result, Step
-from coilset.model.core.section import surface
 from coilset.model.physics.time.creep.entries import CreepTests
-from coilset.model.tools.standards.case_warnings import case_warnings
+from coilset.model.tools.limits.case_warnings import case_warnings
 from coilset.scripts.commands.solve import solve
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]

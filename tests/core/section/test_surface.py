@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from coilset.model.core.results.surface import Inside, beyond_middle, equivalent, nominal_shear, peak, shear
 from coilset.model.core.section.rules import rim
-from coilset.model.core.section.surface import Inside, beyond_middle, equivalent, nominal_shear, peak, shear
 
 PLANE = ("s11", "t12", "t13", "B11", "B12", "B13", "b")
 WARPING = ("s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12", "B13", "B23", "b")

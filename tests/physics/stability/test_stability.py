@@ -17,8 +17,9 @@ from coilset.model.core.equilibrium.settings import StepControl
 from coilset.model.core.equilibrium.system.load import Drag
 from coilset.model.core.equilibrium.system.system import Evaluation
 from coilset.model.core.results.records.record import Step
+from coilset.model.core.results.records.shape import axis_offset
 from coilset.model.physics.stability.branch_switching import Snap
-from coilset.model.physics.stability.buckling import axis_offset, buckling, leaning
+from coilset.model.physics.stability.buckling import buckling, leaning
 from coilset.model.physics.stability.stability import mode_in_words, negative_pivots
 from coilset.scripts.terminal.progress import Lines
 

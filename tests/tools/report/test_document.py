@@ -18,7 +18,7 @@ from coilset.model.tools.document.content import document
 from coilset.model.tools.document.output import WRITERS
 from coilset.model.tools.document.words import Words
 from coilset.model.tools.sheet import from_results
-from coilset.model.tools.standards.case_sheet import case_sheet
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.scripts.main import app
 
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 65.0, "hand": "left"}

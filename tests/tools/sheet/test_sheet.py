@@ -12,14 +12,14 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import read_case
 from coilset.model.core.case.material import case_law
+from coilset.model.tools.limits.case_warnings import case_warnings
+from coilset.model.tools.limits.working_warnings import stress_warnings
 from coilset.model.tools.sheet import from_results
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import sections
+from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards import en15800, goodman
-from coilset.model.tools.standards.case_sheet import case_sheet
-from coilset.model.tools.standards.case_warnings import case_warnings
 from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.standards.sheet import Sheet
-from coilset.model.tools.standards.working_warnings import stress_warnings
 from coilset.model.tools.wires import names, wire
 from coilset.scripts.commands.sheet import Options, list_wires, sheet
 

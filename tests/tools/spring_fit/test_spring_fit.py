@@ -13,12 +13,12 @@ from coilset.model.core.material import library
 from coilset.model.core.material.law.file import MaterialFile
 from coilset.model.core.material.law.law import Law
 from coilset.model.tools.identification import programs
+from coilset.model.tools.limits.case_warnings import case_warnings
 from coilset.model.tools.spring_fit import rods
 from coilset.model.tools.spring_fit.fit import fit_springs
 from coilset.model.tools.spring_fit.laws import TRIAL, Form
 from coilset.model.tools.spring_fit.next_press import next_press
 from coilset.model.tools.spring_fit.pressing import read_pressing
-from coilset.model.tools.standards.case_warnings import case_warnings
 from coilset.scripts.commands.material import app
 from coilset.verification.cases.springs import spring_fit as study
 from coilset.verification.references import heun

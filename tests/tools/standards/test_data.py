@@ -5,9 +5,9 @@ import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.core.material.law.steel import STEEL
+from coilset.model.tools.sheet.spring_data import spring_data
 from coilset.model.tools.standards.buckling import buckling_travel
 from coilset.model.tools.standards.rate import torsion_rate
-from coilset.model.tools.standards.spring_data import spring_data
 
 G = 81500.0
 

@@ -12,8 +12,8 @@ from derivations import E, closed_helix, half_wave, haringx, helix_compliance, p
 
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.tools.sheet.rows import DERIVED, GIVEN, ONE, TWO, sections
+from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.standards.sheet import Sheet
 from coilset.model.tools.wires import wire
 from coilset.verification.one_section.slice_references import ring_sector
 

@@ -16,12 +16,12 @@ from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import UnloadedCase, check
 from coilset.model.core.case.material import case_law
 from coilset.model.tools.document.diagrams import diagrams
+from coilset.model.tools.limits.case_warnings import case_warnings, sheet_warnings
+from coilset.model.tools.limits.spring_warnings import spring_warnings
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.from_results import Found
 from coilset.model.tools.sheet.rows import sections
 from coilset.model.tools.standards.buckling import buckling_travel
-from coilset.model.tools.standards.case_sheet import case_sheet
-from coilset.model.tools.standards.case_warnings import case_warnings, sheet_warnings
-from coilset.model.tools.standards.spring_warnings import spring_warnings
 
 HOOK = {"shape": "german", "length": 18.6}
 PULLED = {

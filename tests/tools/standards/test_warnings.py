@@ -8,9 +8,9 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.core.case import read_case
 from coilset.model.core.case.material import case_law
 from coilset.model.core.material import library
+from coilset.model.tools.limits.case_warnings import case_warnings
+from coilset.model.tools.limits.spring_warnings import spring_warnings
 from coilset.model.tools.standards.buckling import buckling_travel
-from coilset.model.tools.standards.case_warnings import case_warnings
-from coilset.model.tools.standards.spring_warnings import spring_warnings
 
 RIGHT = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 12.0}
 

@@ -9,11 +9,11 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.material.law.steel import STEEL, Elastic
+from coilset.model.tools.limits.working_warnings import gap_warnings, presetting_warning, stress_warnings
 from coilset.model.tools.sheet.from_results import Found
+from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards import en13906
 from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.standards.sheet import Sheet
-from coilset.model.tools.standards.working_warnings import gap_warnings, presetting_warning, stress_warnings
 from coilset.model.tools.wires import wire
 
 SPEC = {

@@ -17,8 +17,8 @@ from coilset.meshes.sections.shapes import round_wire
 from coilset.model.core.base.style import STYLE
 from coilset.model.core.material import library
 from coilset.model.core.material.law.law import Law
+from coilset.model.core.results.surface import nominal_shear
 from coilset.model.core.section.rules import polar
-from coilset.model.core.section.surface import nominal_shear
 from coilset.model.physics.slice.analysis import ACROSS
 from coilset.verification.one_section.helix import WIRE, HelixSection
 from coilset.verification.one_section.slice_references import ring_sector

@@ -13,6 +13,7 @@ from coilset.model.core.base.errors import InputError, reading
 from coilset.model.core.results.files.netcdf import read_netcdf
 from coilset.model.core.results.loading import Loading, loading_of
 from coilset.model.core.results.records.units import unit_of
+from coilset.model.core.rod.elements import THESIS
 
 
 @dataclass(frozen=True)
@@ -108,8 +109,9 @@ EARLIER = {"history": "point_state"}
 
 
 def current_names(data: xr.Dataset) -> xr.Dataset:
-    """points.nc with the names of today."""
-    return data.rename({old: new for old, new in EARLIER.items() if old in data})
+    """points.nc with the names of today, and what those of before lack."""
+    data = data.rename({old: new for old, new in EARLIER.items() if old in data})
+    return data if "abscissa" in data else data.assign(abscissa=("gauss", THESIS.xi))
 
 
 def table(path: Path) -> xr.Dataset:

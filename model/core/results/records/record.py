@@ -11,10 +11,10 @@ from coilset.meshes.springs.ends import ENDS
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.core.base.warning import Warning
+from coilset.model.core.results import surface
 from coilset.model.core.results.records.frame import Frame
 from coilset.model.core.results.records.units import words_and_unit
 from coilset.model.core.rod.elements import Element
-from coilset.model.core.section import surface
 from coilset.model.core.section.rules import DiskRule
 
 AT_REST = 1e-6  # of the greatest load so far, and of the height: what changes by less stays as it is
@@ -360,6 +360,7 @@ class Setup:
         force_line: ForceLine, or None.
         initial_tension: with which coils are wound onto each other, N; 0: they are not.
         strength: coilset.model.physics.fatigue.strength.Strength of the wire, or None.
+        nominal_stress: under 1 N by EN 13906-1, and corrected for curvature, MPa/N; None if no cylinder.
         bounds: Limits of results.
     """
 
@@ -384,6 +385,7 @@ class Setup:
     force_line: ForceLine | None = None
     initial_tension: float = 0.0
     strength: Any = None
+    nominal_stress: tuple[float | None, float | None] = (None, None)
     bounds: tuple[Limit, ...] = ()
 
     @property

@@ -1,6 +1,6 @@
 """The entries of a run's summary: name, unit and meaning, from which responses of sweeps and tables derive."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields
 from types import UnionType
 from typing import Any, get_args
 
@@ -8,7 +8,7 @@ from coilset.model.core.base.warning import Warning
 from coilset.model.core.results.records.record import RunErrors
 
 
-def entry(unit: str, text: str, in_slice: bool = False) -> Any:
+def entry(unit: str, text: str, in_slice: bool = False, default: Any = MISSING) -> Any:
     """A field of the summary.
 
     Args:
@@ -16,13 +16,15 @@ def entry(unit: str, text: str, in_slice: bool = False) -> Any:
         text: its meaning, in Markdown.
         in_slice: whether the helical slice, a single section whose axis cannot bend, computes it too; its stresses at
             the surface are in `loaded` and `released`.
+        default: of one that an optional package gives; none of the others.
     """
-    return field(metadata={"unit": unit, "text": text, "in_slice": in_slice})
+    return field(default=default, metadata={"unit": unit, "text": text, "in_slice": in_slice})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Summary:
-    """The main numbers of a run, in the order of summary.json; unknown entries (no release, no block) are None."""
+    """The main numbers of a run, in the order of summary.json; unknown entries (no release, no block) are None, as
+    are those of packages that are not installed."""
 
     complete: bool = entry("", "whether the run went through its whole load program", in_slice=True)
     free_length_before_mm: float = entry("mm", "outer length of the unloaded spring", in_slice=True)
@@ -193,9 +195,10 @@ class Summary:
         "maximum `shear_inside_MPa` and `shear_surface_MPa` of the middle turns with their places, `allowed_MPa` and "
         "`safety` for a wire of a standard in a compression spring, force centres; or the `reason` why the spring "
         "cannot be there",
+        default=(),
     )
     working_set_mm: float | None = entry(
-        "mm", "further set by going to the working lengths once; 0 of a spring that stays elastic"
+        "mm", "further set by going to the working lengths once; 0 of a spring that stays elastic", default=None
     )
     fatigue: tuple[dict[str, Any], ...] = entry(
         "",
@@ -203,11 +206,13 @@ class Summary:
         "greatest fully reversed `amplitude_MPa` on the wire's surface that damages as much, its `turn` and "
         "`angle_deg` from the inside of the coil, the `endured_MPa`, their ratio `safety`, and `lives`, cycles "
         "that 10, 50 and 90 % do not survive, `null` where it endures",
+        default=(),
     )
     limits: tuple[dict[str, Any], ...] = entry(
         "",
         "for each of the case's `limits`: `name` of the result, its `value`, `low`, `high`, their `source`, whether "
         "they are `met`, and the `margin` to the nearer one, negative outside",
+        default=(),
     )
     load_loss_percent: float | None = entry(
         "%",
@@ -237,14 +242,17 @@ class Summary:
     failed_solves: int = entry("", "solves without an equilibrium, which were followed by others")
     material: str = entry("", "name of the law", in_slice=True)
     ends: str = entry("", "`seats` or `clamped`", in_slice=True)
-    unstable_steps: int = entry("", "steps that ended in an unstable state")
-    buckled: bool = entry("", "whether the spring buckled: became unstable, passed a maximum of its force, or bowed")
-    buckling_travel_mm: float | None = entry("mm", "travel at which it did")
-    buckling_force_N: float | None = entry("N", "force there")
+    unstable_steps: int | None = entry("", "steps that ended in an unstable state", default=None)
+    buckled: bool | None = entry(
+        "", "whether the spring buckled: became unstable, passed a maximum of its force, or bowed", default=None
+    )
+    buckling_travel_mm: float | None = entry("mm", "travel at which it did", default=None)
+    buckling_force_N: float | None = entry("N", "force there", default=None)
     buckling_travel_EN_13906_1_mm: float | None = entry(
         "mm",
         "travel at which it should by EN 13906-1 with these ends, if elastic; `null` if never, or if it is not "
         "compressed",
+        default=None,
     )
     elements: int = entry("", "rods along the wire", in_slice=True)
     section_kind: str = entry("", "`plane`, `curved` or `warping`")
@@ -260,7 +268,7 @@ class Summary:
 
 def _is_number(kind: Any) -> bool:
     """Whether a field holds a number, or one that may be missing."""
-    return kind in (int, float) or (isinstance(kind, UnionType) and float in get_args(kind))
+    return kind in (int, float) or (isinstance(kind, UnionType) and not {int, float}.isdisjoint(get_args(kind)))
 
 
 NUMBERS = tuple(item.name for item in fields(Summary) if _is_number(item.type))

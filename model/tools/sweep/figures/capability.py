@@ -19,7 +19,7 @@ from coilset.model.core.case import check
 from coilset.model.core.case.material import case_elastic, case_law
 from coilset.model.core.results.records.record import Limit
 from coilset.model.core.results.records.units import words_and_unit
-from coilset.model.tools.standards.limits import case_limits
+from coilset.model.tools.limits.limits import case_limits
 from coilset.model.tools.sweep.multifidelity import LEVEL, ControlVariate, slope
 
 ENOUGH = 8  # cases

@@ -11,11 +11,11 @@ from coilset.model.core.case.loading import is_turned, pulls, rotations, torques
 from coilset.model.core.case.material import case_elastic, case_law
 from coilset.model.core.case.targets import check_travel
 from coilset.model.tools.sheet.from_results import Found
+from coilset.model.tools.sheet.sheet import Sheet, pulled_lengths, working_lengths
 from coilset.model.tools.standards.buckling import seating_of
 from coilset.model.tools.standards.cylinder import Cylinder
 from coilset.model.tools.standards.en15800 import Grade
 from coilset.model.tools.standards.rate import OnPoint, hook_stress, tails_compliance
-from coilset.model.tools.standards.sheet import Sheet, pulled_lengths, working_lengths
 from coilset.model.tools.wires import wire
 from coilset.model.tools.wires.law import warm_elastic
 

@@ -12,9 +12,9 @@ from coilset.model.core.results.records.record import Limit
 from coilset.model.core.results.records.summary_entries import NUMBERS
 from coilset.model.core.results.records.units import without_unit, words_and_unit
 from coilset.model.physics.working.working import is_working_number, names_of, place_of
+from coilset.model.tools.limits.limit_entries import GRADE, About, AnyLimit
 from coilset.model.tools.standards import en13906, en15800
 from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.standards.limit_entries import GRADE, About, AnyLimit
 
 OTHERS = {"free_length": "free_length_after_mm", "rate": "rate_30_70_after_N_per_mm"}
 """Results by their names on a drawing, where it means the finished spring."""

@@ -10,20 +10,21 @@ from coilset.model.core.case.case import SectionSpec
 from coilset.model.core.case.loading import is_pressed
 from coilset.model.core.case.material import case_elastic
 from coilset.model.core.case.phases import TimePhase
+from coilset.model.core.case.warping import keeps_elastic_warping, warping_can_be_estimated
 from coilset.model.core.material.law.law import Law
 from coilset.model.core.material.law.steel import Elastic
-from coilset.model.tools.standards import en13906
-from coilset.model.tools.standards.buckling import seating_of
-from coilset.model.tools.standards.case_sheet import case_sheet
-from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.standards.sheet import Sheet, working_lengths
-from coilset.model.tools.standards.spring_warnings import spring_warnings
-from coilset.model.tools.standards.working_warnings import (
+from coilset.model.tools.limits.spring_warnings import spring_warnings
+from coilset.model.tools.limits.working_warnings import (
     endurance_warnings,
     gap_warnings,
     strength_warnings,
     stress_warnings,
 )
+from coilset.model.tools.sheet.case_sheet import case_sheet
+from coilset.model.tools.sheet.sheet import Sheet, working_lengths
+from coilset.model.tools.standards import en13906
+from coilset.model.tools.standards.buckling import seating_of
+from coilset.model.tools.standards.cylinder import Cylinder
 from coilset.model.tools.wires import wire
 from coilset.model.tools.wires.wire import ROOM_TEMPERATURE
 
@@ -122,16 +123,6 @@ def _supports(case: Case, spring: Spring) -> Iterator[Warning]:
                 "give closed end_coils, or seats: {hold: tips}"
             )
             yield Warning("support", "seats.hold", message)
-
-
-def keeps_elastic_warping(case: Case, spring: Spring) -> bool:
-    """Whether its sections' warping would change as they yield, but does not."""
-    return spring.section is not None and case.mesh.section.kind != "warping"
-
-
-def warping_can_be_estimated(case: Case, law: Law) -> bool:
-    """Whether sections can be followed as ones that warp freely: with six stresses, in curved wire."""
-    return case.mesh.section.kind == "curved" and law.keeps_direction is None
 
 
 def _warping(case: Case, spring: Spring, law: Law) -> Iterator[Warning]:

@@ -8,7 +8,6 @@ rtol 1e-10. The constants of Ck 15 are typed from the thesis, 6.2.2. No formula 
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -214,8 +213,3 @@ class Reference:
             y = found.y[:, -1]
             assert abs(self.excess(y)) < 1e-6 * self.k2(y)
         return np.array(states)
-
-
-@pytest.fixture(scope="session")
-def reference():
-    return SimpleNamespace(Reference=Reference, ck15=ck15, table=table)

@@ -10,7 +10,7 @@ from coilset.model.tools.standards.goodman import Cycle, Line
 from coilset.model.tools.wires.wire import Wire
 
 if TYPE_CHECKING:  # a sheet's file imports the formulas
-    from coilset.model.tools.standards.sheet import Sheet
+    from coilset.model.tools.sheet.sheet import Sheet
 
 ROUNDING = 1e-6  # of the travel to block: what a spring sets by less is none
 PRESETTING_LEAST = 0.1  # of the travel to block; a rule of thumb without a source

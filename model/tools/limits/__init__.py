@@ -1,0 +1,1 @@
+"""Limits of results, and what the standards say of a case and its run."""
