@@ -35,7 +35,7 @@ import xarray as xr
 import yaml
 from mpi4py import MPI
 
-from coilset.model.compose.analysis import Analysis, FurtherContacts
+from coilset.model.compose.analysis import Analysis, FurtherContacts, run_within_accuracy
 from coilset.model.compose.run_files import write_run
 from coilset.model.compose.summary import summarise
 from coilset.model.core.base.agreement import on_first_rank
@@ -56,7 +56,6 @@ from coilset.model.core.results.records.record import Step
 from coilset.model.core.runtime.processes import usable_cores
 from coilset.model.core.runtime.threads import usual
 from coilset.model.physics.own_laws.own import OwnLaw
-from coilset.model.tools.further_runs.refinement import within_accuracy
 from coilset.model.tools.identification.programs import Program
 from coilset.model.tools.identification.programs import run as run_program
 from coilset.model.tools.sweep.study import Study as _Study
@@ -405,7 +404,7 @@ def solve(
         raise InputError(f"must be a class made from StepSizes, not {shortened(repr(steps))}", "steps")
     first = Analysis(checked, comm, threads=threads or usual(comm.size), law=law, contacts=contacts, steps=steps)
     try:
-        return _result(within_accuracy(first, lambda one, _: one.run(report)))
+        return _result(run_within_accuracy(first, lambda one, _: one.run(report)))
     except SolveError as error:
         error.result = _result(first) if first.result.steps else None
         raise

@@ -7,10 +7,11 @@ from mpi4py import MPI
 
 from coilset.model.compose.analysis import Analysis
 from coilset.model.compose.examples import EXAMPLES
+from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.package import package
 from coilset.model.core.case import Case, read_case
 from coilset.model.core.material import library
-from coilset.model.tools.design.surrogate import guess
-from coilset.model.tools.figures.panels.material_curves import there_and_back
+from coilset.model.core.material.law.law import Law
 from coilset.scripts.compiling import STAGES, compiled
 
 LOADING = "loading=[{to: {travel: 16}, steps: 4}, {to: {force: 0}, steps: 1}]"
@@ -35,20 +36,29 @@ def warm(names: Sequence[str] = STAGES, report: Callable[[str], object] = lambda
         names: of STAGES.
         report: called with a line before each stage: the stage and the number of stages.
     """
-    law = library.load("ck15")
     stages: dict[str, tuple[str, Callable[[], object]]] = {
         "rod": ("a spring that yields", lambda: _run(short_case(*PRESSED))),
         "creep": ("a spring that creeps", lambda: _run(short_case(*HELD))),
-        "uniform": ("the uniform rod", lambda: guess(short_case(*PRESSED), [])),
-        "point": ("a point of material", lambda: there_and_back(law, law.reference_temperature)),
+        "uniform": ("the uniform rod", lambda: _uniform(short_case(*PRESSED))),
+        "point": ("a point of material", lambda: _point(library.load("ck15"))),
     }
     for number, name in enumerate(names, 1):
         words, stage = stages[name]
         report(f"coilset: compiling {number} of {len(names)}: {words}")
-        stage()
+        with contextlib.suppress(InputError):  # a package that is not installed
+            stage()
         with contextlib.suppress(OSError):  # nothing can be stored
             compiled(name).touch()
 
 
 def _run(case: Case) -> None:
     Analysis(case, MPI.COMM_SELF).run()
+
+
+def _uniform(case: Case) -> None:
+    package("coilset.model.tools.design.surrogate", "a design").guess(case, [])
+
+
+def _point(law: Law) -> None:
+    curves = package("coilset.model.tools.figures.panels.material_curves", "a page")
+    curves.there_and_back(law, law.reference_temperature)

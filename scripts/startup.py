@@ -55,6 +55,7 @@ def load_for_solve() -> None:
     import pydantic.main  # noqa: F401
     import ufl  # noqa: F401
 
-    import coilset.model.compose.contacts
-    import coilset.model.physics.accuracy.finer_path
-    import coilset.model.tools.limits.case_warnings  # noqa: F401
+    from coilset.model.compose.parts import installed
+
+    for module in ("physics.accuracy.finer_path", "tools.limits.case_warnings"):
+        installed(module)

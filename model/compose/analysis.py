@@ -5,14 +5,14 @@ from collections.abc import Callable
 from mpi4py import MPI
 
 from coilset.model.compose.load_history import FurtherContacts, LoadHistory, Save
+from coilset.model.compose.parts import installed
 from coilset.model.core.base.package import package
 from coilset.model.core.case import Case
 from coilset.model.core.equilibrium.path.step_sizes import StepSizes
 from coilset.model.core.material.law.law import Law
 from coilset.model.core.results.records.record import Result, Step
 
-# The doors to what a case asks for beyond its load program.
-ESTIMATES, WORKING = "coilset.model.tools.further_runs.error_estimates", "coilset.model.tools.further_runs.working"
+WORKING = "coilset.model.tools.further_runs.working"  # the door to what a case asks for beyond its load program
 
 
 class Analysis(LoadHistory):
@@ -37,7 +37,8 @@ class Analysis(LoadHistory):
     ) -> None:
         super().__init__(case, comm, detailed, threads, law, contacts, steps)
         wanted = estimates and case.steps_error is not None and contacts is None
-        self._estimated = package(ESTIMATES, "an estimate of errors", "accuracy").estimated if wanted else None
+        further = installed("tools.further_runs.error_estimates") if wanted else None
+        self._estimated = None if further is None else further.estimated
         self._working = package(WORKING, "a working state", "working").working_states if case.working else None
 
     def run(
@@ -52,3 +53,21 @@ class Analysis(LoadHistory):
             self.recorder.add_working(self._working(self))
         self.recorder.end(self.result if self._estimated is None or not self.result.steps else self._estimated(self))
         return self.result
+
+
+def run_within_accuracy(first: Analysis, run: Callable[[Analysis, str], object]) -> Analysis:
+    """Run an analysis, and again finer until its errors are within its accuracy, where that is installed; collective.
+
+    Args:
+        first: Analysis.
+        run: runs one; the words say how the finer one differs, and are empty of the first.
+
+    Returns:
+        The last Analysis.
+    """
+    refinement = installed("tools.further_runs.refinement")
+    if refinement is None:
+        run(first, "")
+        return first
+    last: Analysis = refinement.within_accuracy(first, run)
+    return last

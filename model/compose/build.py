@@ -220,7 +220,7 @@ def build_setup(
         law.data.validity.plastic_work,
         case_strength(case, spring),
         PENETRATION * 2.0 * least_radius,
-        case.steps_error,
+        None if installed("physics.accuracy.step_error") is None else case.steps_error,
         *case_allowed(case, spring),
         creep=law.data.creep.tests if law.data.creep else None,
     )

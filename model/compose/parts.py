@@ -3,20 +3,20 @@
 from functools import cache
 from types import ModuleType
 
-from coilset.model.core.base.package import optional
+from coilset.model.core.base.package import missing, optional
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.results.records.part import Part
 
 RECORDED = "physics.stability", "tools.limits", "physics.working", "physics.fatigue"
 """Packages that add to the records of a run: each has a PART in its module `part`."""
 MISSED = {
-    "physics.accuracy": "errors by the steps",
-    "physics.reactions": "reactions of the seats",
-    "physics.stability": "buckling and snap-through",
-    "tools.further_runs": "errors by mesh, section and contact",
-    "tools.limits": "checks by the standards",
+    "physics.accuracy.step_error": "control of its steps, and errors by them",
+    "physics.reactions.seat_reactions": "reactions of the seats",
+    "physics.stability.stability": "buckling and snap-through",
+    "tools.further_runs.error_estimates": "errors by mesh, section and contact",
+    "tools.limits.before_run": "checks by the standards",
 }
-"""What every run is without where a package is missing; all others are missed only by a case that names them."""
+"""What every run is without where a module is missing; all others are missed only by a case that names them."""
 
 
 def installed(module: str) -> ModuleType | None:
@@ -33,8 +33,13 @@ def parts() -> tuple[Part, ...]:
 
 def lacking() -> list[Warning]:
     """One warning that names what the run is without, if anything."""
-    missed = {name: words for name, words in MISSED.items() if installed(name) is None}
-    if not missed:
+    lacks = {module: missing(f"coilset.model.{module}") for module in MISSED}
+    names = [name.removeprefix("coilset.model.") for name in lacks.values() if name]
+    if not names:
         return []
-    without, packages = "; ".join(missed.values()), ", ".join(missed)
-    return [Warning("packages", "", f"this installation lacks {packages}; the run is without {without}")]
+    words = "; ".join(MISSED[module] for module, name in lacks.items() if name)
+    return [
+        Warning(
+            "packages", "", f"this installation lacks {', '.join(dict.fromkeys(names))}; the run is without {words}"
+        )
+    ]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.analysis import Analysis, run_within_accuracy
 from coilset.model.compose.run_files import write_run
 from coilset.model.compose.summary import summarise
 from coilset.model.core.base.agreement import on_first_rank
@@ -21,7 +21,6 @@ from coilset.model.core.results.files.folder import DRAWN, RESULTS, clear, prepa
 from coilset.model.core.results.records.provenance import origin
 from coilset.model.core.results.records.record import Step
 from coilset.model.core.runtime.threads import usual
-from coilset.model.tools.further_runs.refinement import within_accuracy
 from coilset.scripts.compiling import compile_first
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.drawing import Drawings
@@ -139,7 +138,7 @@ def _solve(first: Analysis, runs: _Runs, drawings: Drawings | None) -> None:
     """Run an analysis, and finer ones if need be; write, print and draw the results."""
     began, failure, output, folder = time.perf_counter(), None, runs.output, runs.folder
     try:
-        analysis = runs(first) if runs.interactive else within_accuracy(first, runs)
+        analysis = runs(first) if runs.interactive else run_within_accuracy(first, runs)
     except (SolveError, KeyboardInterrupt) as error:
         failure, analysis = error, runs.best
         if runs.interrupt.stopped() and isinstance(error, SolveError):  # a step that was to be finished, and failed

@@ -103,7 +103,7 @@ class Lines:
         cuts, left = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else "", ""
         if step.left_branch:
             left = "  snapped" if step.released_energy_Nmm else "  left its path"
-        touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
+        touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats)
         row = f"{self._row(step)}{step.contacts:7d}  {touching}{cuts}"
         self.console.print(Text.assemble(row, (left, "yellow"), (waiting, "dim")), soft_wrap=True)
 
@@ -215,7 +215,7 @@ class JsonLines(Lines):
 
     def step(self, step: Step) -> None:
         """The step's row of history.csv, the contacts, and the completed part of the load program."""
-        touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
+        touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats)
         self._put("step", **asdict(step), touching=touching, done=_done(self.analysis, step))
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
@@ -300,14 +300,17 @@ def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:
     return made
 
 
-def contact_words(kinds: Sequence[ContactRecord], reactions: SeatReactions) -> str:
-    """Which kinds of contact press on the wire: `both seats, coils`, `bottom seat`, or `no contact`.
+def contact_words(kinds: Sequence[ContactRecord], reactions: Sequence[SeatReactions]) -> str:
+    """Which kinds of contact press on the wire now: `both seats, coils`, `bottom seat`, or `no contact`.
 
     Args:
         kinds: of the Setup.
-        reactions: of the step.
+        reactions: up to now; none if they are not recorded, and then the words are empty.
     """
-    names = [kinds[number].name for number in sorted({int(row[0]) for row in reactions.pressure if row[2] > 0.0})]
+    if not reactions:
+        return ""
+    pressure = reactions[-1].pressure
+    names = [kinds[number].name for number in sorted({int(row[0]) for row in pressure if row[2] > 0.0})]
     if {"bottom seat", "top seat"} <= set(names):
         names = ["both seats", *(name for name in names if not name.endswith(" seat"))]
     return ", ".join(names) or "no contact"

@@ -33,11 +33,16 @@ def package(module: str, purpose: str, place: str = "") -> ModuleType:
 
 def optional(module: str) -> ModuleType | None:
     """A module of an optional package; None if this installation does not have it, or not what it is built on."""
+    return importlib.import_module(module) if missing(module) is None else None
+
+
+def missing(module: str) -> str | None:
+    """The package that is lacking for a module of an optional one; None if it can be imported."""
     try:
-        return importlib.import_module(module)
+        importlib.import_module(module)
     except ModuleNotFoundError as error:
-        _lacked(error)
-        return None
+        return _lacked(error)
+    return None
 
 
 def _lacked(error: ModuleNotFoundError) -> str:

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
-from itertools import islice
+from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -26,12 +26,12 @@ class StepJournal:
         self.path, self._written, self._length = path, 0, 0
 
     def append(self, steps: Sequence[Step], seats: Sequence[SeatReactions], frames: Sequence[Frame]) -> None:
-        """Write the steps that are not written yet.
+        """Write the steps that are not written yet; there may be no reactions at all.
 
         Raises:
             CoilsetError: if the file cannot be written.
         """
-        new = zip(*(records[self._written :] for records in (steps, seats, frames)), strict=True)
+        new = zip_longest(*(records[self._written :] for records in (steps, seats, frames)))
         lines = "".join(_line(*records) for records in new).encode()
         try:
             with open(self.path, "r+b" if self._length else "wb", opener=not_linked) as file:
@@ -54,12 +54,13 @@ class StepJournal:
             raise ValueError(f"{self.path.name} has {len(lines)} steps of {count}")
         rows = [json.loads(line) for line in lines]
         self._written, self._length = count, sum(map(len, lines))
-        pressures = (np.array(row["seats"].pop("pressure")).reshape(-1, 3) for row in rows)
-        seats = (SeatReactions.from_row(row["seats"], part) for row, part in zip(rows, pressures, strict=True))
+        reactions = [row["seats"] for row in rows if row["seats"] is not None]
+        pressures = [np.array(row.pop("pressure")).reshape(-1, 3) for row in reactions]
+        seats = map(SeatReactions.from_row, reactions, pressures)
         frames = tuple(Frame.from_row(row["frame"]) for row in rows)
         return tuple(Step(**row["step"]) for row in rows), tuple(seats), frames
 
 
-def _line(step: Step, seats: SeatReactions, frame: Frame) -> str:
-    reactions: dict[str, Any] = {**seats.row(), "pressure": seats.pressure.tolist()}
+def _line(step: Step, seats: SeatReactions | None, frame: Frame) -> str:
+    reactions: dict[str, Any] | None = seats and {**seats.row(), "pressure": seats.pressure.tolist()}
     return json.dumps({"step": asdict(step), "seats": reactions, "frame": frame.row()}) + "\n"
