@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -97,3 +98,19 @@ def test_a_run_without_a_package_has_the_same_numbers(package, whole, tmp_path, 
 
 def test_a_run_without_any_package_has_the_same_numbers(whole, tmp_path, example):
     check(PACKAGES, whole, tmp_path, example)
+
+
+@pytest.mark.slow
+def test_the_cores_own_tests_pass_without_any_package(tmp_path):
+    """Those that need a package by its name in a case are refused, and skipped by tests/conftest.py: a fifth."""
+    root = copy_without(PACKAGES, tmp_path)
+    for name in ("examples", "docs", "tests/core"):
+        shutil.copytree(rooms.ROOT / name, root / name, dirs_exist_ok=True)
+    for name in ("tests/conftest.py", "tests/rate_equations.py", "pyproject.toml"):
+        shutil.copy(rooms.ROOT / name, root / name)
+    command = [sys.executable, "-m", "pytest", "-q", "-m", "not mpi and not slow", "tests/core"]
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+    counts = {word: int(count) for count, word in re.findall(r"(\d+) (passed|skipped)", done.stdout.splitlines()[-1])}
+    assert counts["skipped"] < 0.2 * counts["passed"]

@@ -1,6 +1,7 @@
 """The pictures of the pages are those of the runs that the text beside them describes."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -58,3 +59,10 @@ def test_a_picture_of_another_run_is_found():
     page = "| maximum force | 253.4 ± 0.3 N |, set 13.288 ± 0.006 mm, block 17.5000 mm"
     assert list(differing("Compressed with up to 254.4 N, the spring sets 13.28 mm", page)) == ["254.4 N", "13.28 mm"]
     assert list(differing("Compressed with up to 253.4 N, the spring sets 13.29 mm to 17.5 mm; 1:48 Hz", page)) == []
+
+
+def test_the_picture_of_the_rooms_is_of_todays_plan():
+    """`pictures.py rooms` draws it again."""
+    rooms = tomllib.loads((REPOSITORY / "model" / "rooms.toml").read_text(encoding="utf-8"))["rooms"]
+    with Image.open(REPOSITORY / "docs" / "pictures" / "rooms.png") as picture:
+        assert picture.text["Rooms"].split(", ") == list(rooms)

@@ -1,11 +1,10 @@
 """Entries of a case: what is not a number, what is misspelt, paths, earlier names, and messages in words."""
 
-import importlib
-
 import pytest
 
 from coilset.model.core.base.entry import LONGEST, shown
 from coilset.model.core.base.errors import InputError
+from coilset.model.core.base.package import package
 from coilset.model.core.case import Case, UnloadedCase, check, read_case
 from coilset.model.core.case.settings import assign
 from coilset.model.core.equilibrium.settings import CONSTANTS
@@ -129,7 +128,7 @@ def test_what_is_a_constant_now_is_refused_with_its_place():
         assert found == (
             f"solver.control.{name}: this is no longer an entry, but the constant {entry.upper()} of model/{file}"
         )
-        module = importlib.import_module("coilset.model." + file.removesuffix(".py").replace("/", "."))
+        module = package("coilset.model." + file.removesuffix(".py").replace("/", "."), "the constant")
         assert getattr(module, entry.upper()) > 0.0
     found = problem(raw(solver={"control": {"newton": {"free_penetration": 0.1}}}))
     assert found.startswith("solver.control.newton.free_penetration: this is no longer an entry, but contact.penetrati")

@@ -1,4 +1,4 @@
-"""Rates from a characteristic, against curves whose slope is known, and active turns of a spring that is released."""
+"""Rates from a characteristic, against curves whose slope is known."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -122,17 +122,6 @@ def pressed(example):
     analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
     analysis.run()
     return analysis
-
-
-def test_active_turns_of_a_spring_that_has_set_are_those_of_its_state(pressed):
-    """Held tips keep a torque that goes with no force: it counts the more the smaller the force, both ways alike."""
-    active = np.array([one.active_turns for one in pressed.result.seats])
-    forces = np.array([one.force_N for one in pressed.result.steps])
-    assert np.all(np.diff(forces[7:12]) < 0)
-    assert np.all(np.diff(active[6:11]) > 0)
-    assert np.isnan(active[11])  # free of load
-    again = np.interp(1 / forces[12:], 1 / forces[7:11], active[7:11])
-    assert active[12:] == pytest.approx(again, rel=0.02)
 
 
 def test_the_rates_of_a_spring_that_sets(pressed):

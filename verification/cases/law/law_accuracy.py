@@ -3,8 +3,8 @@
 Ck 15 along tension, reversed torsion and tension with an abrupt change to torsion, one step per increment (Heun without
 its error control). The maximum error of stress along the path, over the flow stress, must fall with the square of the
 increment for both; Heun with its error control must keep its tolerance whatever the increment. That the reference
-itself is right is shown elsewhere: `tests/core/material/test_accuracy.py` integrates the rate equations as they stand,
-in 3 × 3 tensors with scipy's DOP853.
+itself is right is shown elsewhere: `tests/verification/test_law_accuracy.py` integrates the rate equations as they
+stand, in 3 × 3 tensors with scipy's DOP853.
 """
 
 import matplotlib as mpl
