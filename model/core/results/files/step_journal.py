@@ -3,7 +3,7 @@
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
-from itertools import islice, zip_longest
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -31,8 +31,8 @@ class StepJournal:
         Raises:
             CoilsetError: if the file cannot be written.
         """
-        new = zip_longest(*(records[self._written :] for records in (steps, seats, frames)))
-        lines = "".join(_line(*records) for records in new).encode()
+        new = range(self._written, len(steps))
+        lines = "".join(_line(steps[k], seats[k] if seats else None, frames[k]) for k in new).encode()
         try:
             with open(self.path, "r+b" if self._length else "wb", opener=not_linked) as file:
                 file.truncate(self._length)  # written by a killed run after its last state
@@ -62,5 +62,7 @@ class StepJournal:
 
 
 def _line(step: Step, seats: SeatReactions | None, frame: Frame) -> str:
-    reactions: dict[str, Any] | None = seats and {**seats.row(), "pressure": seats.pressure.tolist()}
+    reactions: dict[str, Any] | None = None
+    if seats is not None:
+        reactions = {**seats.row(), "pressure": seats.pressure.tolist()}
     return json.dumps({"step": asdict(step), "seats": reactions, "frame": frame.row()}) + "\n"
