@@ -1,7 +1,5 @@
-"""From a case to the parts of its analysis: mesh and rod, heat, Newton's method, control, continuation, records."""
+"""From a case to the parts of its analysis: mesh and rod, heat, Newton's method, control, continuation."""
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -12,15 +10,13 @@ from mpi4py import MPI
 from coilset.meshes.line import line_mesh
 from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement, chord_placement, refuse_sharp_bends, section_placement
-from coilset.model.compose.parts import installed, lacking
+from coilset.model.compose.parts import installed
 from coilset.model.core.base.package import package
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.case import Case
-from coilset.model.core.case.head_freedoms import DamperSpec, HeadsSpec
-from coilset.model.core.case.material import case_allowed, case_elastic, case_strength
-from coilset.model.core.case.phases import Phase, heads_of
+from coilset.model.core.case.head_freedoms import HeadsSpec
+from coilset.model.core.case.phases import heads_of
 from coilset.model.core.case.seats import SeatsSpec
-from coilset.model.core.contact.base import Contact
 from coilset.model.core.equilibrium.newton.contact_limit import ContactLimit
 from coilset.model.core.equilibrium.newton.methods import Method, rod_method
 from coilset.model.core.equilibrium.newton.newton import Newton
@@ -29,14 +25,12 @@ from coilset.model.core.equilibrium.system.heads import Heads, Holding
 from coilset.model.core.equilibrium.system.layout import LineLayout
 from coilset.model.core.equilibrium.system.system import System
 from coilset.model.core.material.law.law import Law
-from coilset.model.core.results.records.record import ContactRecord, ForceLine, Limit, Limits, Setup
 from coilset.model.core.rod.elements import ELEMENTS
 from coilset.model.core.rod.rod import Rod
 from coilset.model.core.rotations.triads import chord_triads
 from coilset.model.core.runtime.threads import Threads
 
 # The doors to what not every spring has.
-LIMITS = "coilset.model.tools.limits.limits"
 HEAT, PAST = "coilset.model.physics.time.heat", "coilset.model.physics.manufacture.initial_state"
 OUTLINED, LEVER = "coilset.model.physics.outlines.outlined_section", "coilset.model.physics.guides.lever"
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
@@ -202,74 +196,3 @@ def build_continuation(
     if stability is not None and (switching := installed("physics.stability.branch_switching")) is not None:
         branches = partial(switching.Branches, stability)
     return Continuation(newton, steps, _deepest(case, least_radius), branches=branches, step_error=error)
-
-
-def build_setup(
-    case: Case,
-    spring: Spring,
-    wire: MeshedWire,
-    contacts: Sequence[Contact],
-    past: tuple[float | None, list[Warning]],
-) -> Setup:
-    """Setup of the records of a run; `past` as `build_past` gives it."""
-    rod, law, least_radius = wire.rod, wire.rod.law, float(wire.radius.min())
-    records = tuple(
-        ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts
-    )
-    limits = Limits(
-        law.data.validity.plastic_work,
-        case_strength(case, spring),
-        PENETRATION * 2.0 * least_radius,
-        None if installed("physics.accuracy.step_error") is None else case.steps_error,
-        *case_allowed(case, spring),
-        creep=law.data.creep.tests if law.data.creep else None,
-    )
-    elastic, standards = case_elastic(case, law), installed("tools.limits.before_run")
-    known = None if standards is None else standards.before_run(case, spring, law)
-    warnings = (*(known.warnings if known else ()), *past[1], *wire.warnings, *lacking())
-    bounds: tuple[Limit, ...] = ()
-    if case.limits:
-        bounds = package(LIMITS, "a limit", "limits").case_limits(case, spring, elastic.shear_modulus)
-    return Setup(
-        spring=spring,
-        material=law.name,
-        ends=case.ends,
-        phases=tuple(phase.label for phase in case.loading),
-        forces_given=forces_given(case),
-        torques_given=tuple(any(head.torque is not None for head in heads_of(one).values()) for one in case.loading),
-        turns=wire.turns,
-        wire_radius=wire.radius,
-        rule=rod.rule,
-        contacts=records,
-        section_kind=case.mesh.section.kind,
-        element=wire.rod.element,
-        placement=wire.placement,
-        buckling_travel=known.buckling_travel if known else math.inf,
-        nominal_stress=known.nominal_stress if known else (None, None),
-        limits=limits,
-        rates_at=tuple(case.rates_at),
-        warnings=warnings,
-        coiling_diameter=past[0],
-        force_line=build_force_line(case),
-        bounds=bounds,
-        initial_tension=getattr(case.spring, "initial_tension", None) or 0.0,
-        strength=None if case.endurance is None else case.endurance.strength(0.5 * law.E / law.G - 1.0),
-    )
-
-
-def forces_given(case: Case) -> tuple[bool, ...]:
-    """Of each phase, whether it ends at a force of the load program; time may pass under one."""
-    given = [False]
-    for phase in case.loading:
-        given.append(phase.gives_force if isinstance(phase, Phase) else phase.duration.keep == "force" and given[-1])
-    return tuple(given[1:])
-
-
-def build_force_line(case: Case) -> ForceLine | None:
-    """Where the case reports the force line; without a damper its moments are about the axis, at the bottom seat."""
-    spec = case.force_line
-    if spec is None:
-        return None
-    damper = spec.damper or DamperSpec(point=[0.0, 0.0, 0.0], direction=[0.0, 0.0, 1.0])
-    guides = (tuple(damper.guides or ()), damper.friction or 0.0)
-    return ForceLine(spec.lower, spec.upper, tuple(damper.point), tuple(damper.direction), *guides)

@@ -13,11 +13,9 @@ from coilset.model.compose.warnings import run_warnings
 from coilset.model.core.results.files.netcdf import Stack, Variable, write_netcdf
 from coilset.model.core.results.records.labels import plain
 from coilset.model.core.results.records.record import Result, Setup, Snapshot
-from coilset.model.core.section.kinds import section_points
-from coilset.model.core.section.rules import SURFACE_POINTS
+from coilset.model.core.section.rules import SURFACE_POINTS, spread
 
 Variables = dict[str, Variable]
-DRAWN = 144  # points on the outline of a wire that is not round
 RESULTANTS = ["N", "Q2", "Q3", "Mt", "M2", "M3"]
 
 
@@ -40,8 +38,8 @@ def variables(setup: Setup, result: Result) -> Variables:
 
 def point_state(setup: Setup, result: Result) -> Variables:
     """All section points at all snapshots."""
-    rule, radius, snapshots = setup.rule, setup.wire_radius, result.snapshots
-    places, weights = section_points(rule, setup.placement)
+    sections, radius, snapshots = setup.sections, setup.wire_radius, result.snapshots
+    places, weights = spread(sections.points, sections.weights, sections.curvature.shape, sections.cut)
     places *= radius[:, None, None, None]
     of_points = ("element", "gauss", "point")
     of_sections = ("snapshot", "element", "gauss")
@@ -63,15 +61,14 @@ def point_state(setup: Setup, result: Result) -> Variables:
         "z": Variable(of_points, places[..., 1], mm),
         "wire_radius": Variable(("element",), radius, mm),
         "weight": Variable(of_points, weights),
-        "curvature": Variable(("element", "gauss"), setup.placement.curvature, curvature),
-        "abscissa": Variable(("gauss",), setup.element.xi, {"about": "of the sections, over the element's length"}),
-        "torsion": Variable(("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),
+        "curvature": Variable(("element", "gauss"), setup.sections.curvature, curvature),
+        "abscissa": Variable(("gauss",), setup.sections.abscissae, {"about": "of sections, over the element's length"}),
+        "torsion": Variable(("element", "gauss"), setup.sections.torsion, {"units": "1/mm"}),
         **_coordinates(setup, snapshots),
     }
-    outline = rule.outline
-    if outline is not None:
+    if sections.outline is not None:
         about = {"about": "points of the wire's outline, y and z in wire radii"}
-        data["outline"] = Variable(("corner", "direction"), outline.boundary.points(DRAWN), about)
+        data["outline"] = Variable(("corner", "direction"), sections.outline, about)
     return data
 
 
@@ -162,8 +159,8 @@ def _attributes(setup: Setup, result: Result, origin: Mapping[str, Any]) -> dict
     return {
         "title": "section points of the rod",
         "material": setup.material,
-        "section_rule": setup.rule.name,
-        "section_kind": setup.section_kind,
+        "section_rule": setup.sections.rule,
+        "section_kind": setup.sections.kind,
         "coil_turns": repr(float(setup.spring.turns)),
         **renamed,
         **notes,

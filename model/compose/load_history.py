@@ -16,12 +16,12 @@ from coilset.model.compose.build import (
     build_method,
     build_newton,
     build_past,
-    build_setup,
     build_wire,
 )
 from coilset.model.compose.contacts import build_contacts, seats_at
 from coilset.model.compose.parts import installed
 from coilset.model.compose.recorder import Recorder
+from coilset.model.compose.setup import build_setup
 from coilset.model.core.base.agreement import max_of_ranks
 from coilset.model.core.base.entry import check_entries, shortened
 from coilset.model.core.base.errors import InputError, SolveError
@@ -44,6 +44,7 @@ from coilset.model.core.material.law.law import Law
 from coilset.model.core.results.files.checkpoint import Saved
 from coilset.model.core.results.records.record import Result, Snapshot, Step
 from coilset.model.core.results.records.releases import is_released
+from coilset.model.core.results.records.shape import LeastRise
 
 log = logging.getLogger("coilset.steps")
 BALANCE = "coilset.model.physics.reactions.balance"
@@ -126,7 +127,9 @@ class LoadHistory:
         self.free_ends = FreeEnds(self.control, self.continuation, wire.turns, spring.turns)
         self.program = LoadProgram(self.control, self.continuation)
         self.setup = build_setup(case, spring, wire, kinds, past)
-        self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.stability, detailed)
+        self.recorder = Recorder(
+            self.setup, LeastRise(wire.turns, spring), self.rod, self.system, self.control, self.stability, detailed
+        )
         self.continuation.overshoots = self.recorder.overshoots
 
     @property

@@ -39,6 +39,7 @@ class Recorder:
 
     Args:
         setup: of the records.
+        rise: LeastRise of the spring.
         rod, system, control: of the analysis.
         stability: the Stability that judges its states; None: nothing does.
         detailed: record SeatReactions and Frames, too, and log warnings as soon as a step shows them.
@@ -48,12 +49,19 @@ class Recorder:
     """
 
     def __init__(
-        self, setup: Setup, rod: Rod, system: System, control: Heads, stability: Any | None, detailed: bool
+        self,
+        setup: Setup,
+        rise: LeastRise,
+        rod: Rod,
+        system: System,
+        control: Heads,
+        stability: Any | None,
+        detailed: bool,
     ) -> None:
         self.setup, self.rod, self.system, self.control = setup, rod, system, control
         self.layout, self._stability, self._detailed = system.line, stability, detailed
         self._reactions = installed("physics.reactions.seat_reactions") if detailed else None
-        self.result, self._least_rise = Result(), LeastRise(setup.turns, setup.spring)
+        self.result, self._least_rise = Result(), rise
         self._warned: set[str] | None = None  # names of the steps' warnings so far; None until they are requested
 
     def begin(self, rate: float) -> None:
@@ -209,7 +217,7 @@ class Recorder:
 
     def _as_wrong_as_before(self, step: Step) -> Step:
         """The step; one that changes nothing has the errors by the step size of the one before."""
-        steps, radius = (*self.result.steps, step), 0.5 * self.setup.mean_diameter
+        steps, radius = (*self.result.steps, step), 0.5 * self.setup.spring.mean_diameter
         if len(steps) == 1 or not step.rests(steps[-2], max(one.load(radius) for one in steps), radius):
             return step
         names = "steps_force_error_N", "steps_height_error_mm"

@@ -86,8 +86,8 @@ def summary(setup: Setup, result: Result) -> Summary:
         load_loss_percent=losses[-1]["loss_percent"] if losses else None,
         load_losses=losses,
         coiling_diameter_mm=setup.coiling_diameter,
-        measured_axis_offset_mm=axis.offset if axis else None,
-        measured_axis_tilt_deg=axis.tilt if axis else None,
+        measured_axis_offset_mm=axis[0] if axis else None,
+        measured_axis_tilt_deg=axis[1] if axis else None,
         steps=len(result.steps),
         iterations=sum(step.iterations for step in result.steps),
         evaluations=sum(step.evaluations for step in result.steps),
@@ -95,8 +95,8 @@ def summary(setup: Setup, result: Result) -> Summary:
         material=setup.material,
         ends=setup.ends,
         elements=len(setup.turns) - 1,
-        section_kind=setup.section_kind,
-        section_rule=setup.rule.name,
+        section_kind=setup.sections.kind,
+        section_rule=setup.sections.rule,
         lift_off_max_mm=max((step.lift_off_mm for step in result.steps), default=0.0),
         warnings=tuple(run_warnings(setup, result)),
         **added,
@@ -174,5 +174,5 @@ def estimated_errors(setup: Setup, result: Result) -> dict[str, Any]:
 def inner_diameter(setup: Setup, snapshot: Snapshot) -> float:
     """Diameter of the largest arbor about the axis that the coils leave room for, mm."""
     coil = (setup.turns >= 0.0) & (setup.turns <= setup.spring.turns)
-    radius = 0.5 * setup.spring.wire_diameter(setup.turns[coil])
+    radius = 0.5 * setup.spring.wire_diameter[coil]
     return 2.0 * float((np.hypot(*snapshot.x[coil, :2].T) - radius).min())

@@ -224,7 +224,7 @@ MORE = {
 
 
 def _more(cause: str, setup: Setup) -> str:
-    if cause == "warping" and setup.section_kind == "warping":
+    if cause == "warping" and setup.sections.kind == "warping":
         return "a greater mesh.section.degree reduces it"
     return MORE[cause]
 
@@ -318,7 +318,7 @@ def _longer(setup: Setup, result: Result) -> Iterator[Warning]:
     if any(step.force_N < -FREE * result.greatest_force or step.travel_mm < -limit for step in result.steps[:-1]):
         return
     tilt = max((end.tilt_rad for seats in result.seats[-1:] for end in (seats.bottom, seats.top)), default=0.0)
-    if tilt * float(setup.spring.mean_radius(0.0)) > -release.set:  # measured between seats that are not parallel
+    if tilt * setup.spring.end_radius > -release.set:  # measured between seats that are not parallel
         return
     message = (
         f"the spring is {-release.set:.3g} mm longer after it was only compressed: either fixed ends yield in bending "

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from coilset.model.compose.build import forces_given
+from coilset.model.compose.setup import forces_given
 from coilset.model.compose.warnings import allowed_force
 from coilset.model.core.case import check
 from coilset.model.core.results.records.record import Result, Setup, Step
@@ -25,6 +25,6 @@ def test_accuracy_of_a_given_force(given: bool, allowed: float) -> None:
     errors = {"steps_force_error_N": 0.2, "steps_height_error_mm": -1e-3}
     step = Step(1, 0, 1.0, 80.0, 20.0, 1000.0, 1, 1, 0, 0, 0, 0.0, **errors)
     setup = SimpleNamespace(forces_given=(given,), limits=SimpleNamespace(accuracy=2e-3), mean_diameter=40.0)
-    setup.spring = SimpleNamespace(free_length=100.0)
+    setup.spring = SimpleNamespace(free_length=100.0, mean_diameter=40.0)
     setup.is_force_given = lambda step: Setup.is_force_given(setup, step)
     assert allowed_force(setup, Result(steps=(step,))) == pytest.approx(allowed)

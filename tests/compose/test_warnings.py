@@ -99,7 +99,7 @@ def test_warnings_of_steps(lifted):
 
 def test_a_spring_that_buckles_is_told_from_one_that_leans(lifted):
     """The standard's travel beside it, which is that of elastic wire; the axis of a side-load spring is drawn so."""
-    D = lifted.setup.mean_diameter
+    D = lifted.setup.spring.mean_diameter
     step = Step(1, 0, 1.0, 30.0, 5.0, 100.0, 3, 4, 0, 0, 2, 0.0)
     aside = replace(step, number=2, travel_mm=5.1, force_N=101.0, axis_offset_mm=0.1 * D)
 
@@ -116,8 +116,7 @@ def test_a_spring_that_buckles_is_told_from_one_that_leans(lifted):
     (one,) = found(step, aside)
     assert (one.name, one.value) == ("leans", 0.1 * D)
     assert f"its axis is up to {0.1 * D:.3g} mm aside, at a travel of 5.1 mm, 10 % of its mean diameter" in one.message
-    side_load = copy.copy(lifted.setup.spring)
-    object.__setattr__(side_load, "axis", ())
+    side_load = replace(lifted.setup.spring, is_straight=False)
     assert found(step, aside, spring=side_load) == []
 
 
@@ -156,7 +155,7 @@ def test_a_warning_is_logged_after_the_first_step_that_shows_it(lifted, caplog, 
         {"negative_pivots": 1},
         {"force_N": 1e4, "progress": 1.0},
         {"left_branch": 1, "released_energy_Nmm": 1.0},
-        {"axis_offset_mm": 0.06 * lifted.setup.mean_diameter},
+        {"axis_offset_mm": 0.06 * lifted.setup.spring.mean_diameter},
     ]
     expected = {}
     with caplog.at_level("WARNING", "coilset.steps"):

@@ -112,7 +112,7 @@ def test_the_stress_in_a_loop_is_that_of_a_curved_beam(shape):
         at += bow * outwards / np.linalg.norm(outwards)
         arm = np.hypot(*(top - at)[:2])
         along = 60.0 * abs(chord[2]) / np.linalg.norm(chord)
-        middle = setup.element.xi.shape[0] // 2
+        middle = setup.sections.abscissae.shape[0] // 2
         found.append((stress[e, middle].max(), by_moment * 60.0 * arm + along / area))
         assert found[-1][0] == pytest.approx(found[-1][1], rel=5e-3)
     assert max(found)[0] == pytest.approx(max(found)[1], rel=1e-3)

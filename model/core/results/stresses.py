@@ -18,9 +18,7 @@ def is_middle(setup: Setup) -> np.ndarray:
 
 
 def _beyond_middle(setup: Setup) -> np.ndarray:
-    spring = setup.spring
-    first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
-    return surface.beyond_middle(setup.section_turns, first, last)
+    return surface.beyond_middle(setup.section_turns, *setup.spring.middle)
 
 
 def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.Peak:

@@ -5,6 +5,9 @@
 - warping: it warps freely with the curved and twisted wire, and has all six stresses.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from coilset.meshes.springs.placement import Placement
@@ -45,16 +48,13 @@ def make_sections(
     return FibreSections(law, parameters, rule, radius, placement, kind == "curved", temperature, threads)
 
 
-def section_points(rule: DiskRule, placement: Placement) -> tuple[np.ndarray, np.ndarray]:
-    """Points of all sections in wire radii, (n, g, points, 2), and their shares of the disk, (n, g, points).
+def cut_points(rule: DiskRule, placement: Placement) -> Sequence[tuple[int, int, np.ndarray, np.ndarray]]:
+    """Element, section, points and weights of the sections that grinding has cut, as `spread` takes them.
 
     Raises:
-        InputError: if the package of wire that is ground or not round is missing.
+        InputError: if the package of wire that is ground is missing.
     """
-    if rule.outline is not None or placement.is_cut:
-        outlines = package(OUTLINES, "wire that is ground or not round")
-        points: tuple[np.ndarray, np.ndarray] = outlines.section_points(rule, placement)
-        return points
-    sections = placement.curvature.shape
-    places = np.broadcast_to(rule.points, (*sections, *rule.points.shape)).copy()
-    return places, np.broadcast_to(rule.weights, (*sections, len(rule))).copy()
+    if not placement.is_cut and rule.outline is None:
+        return ()
+    found: Sequence[Any] = package(OUTLINES, "wire that is ground or not round").cut_points(rule, placement)
+    return found

@@ -1,5 +1,6 @@
 """Quadrature of the disk of radius 1; weights sum to 1, so that an integral is πR² Σ w f(Ry, Rz)."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -72,3 +73,22 @@ def rim(points: int = SURFACE_POINTS) -> np.ndarray:
     """Points (y, z) of the unit circle at equal angles from the y axis, shape (points, 2)."""
     angle = 2.0 * np.pi * np.arange(points) / points
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+def spread(
+    points: np.ndarray,
+    weights: np.ndarray,
+    sections: tuple[int, int],
+    cut: Iterable[tuple[int, int, np.ndarray, np.ndarray]],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points of all sections in wire radii, (n, g, points, 2), and their shares of the disk, (n, g, points).
+
+    Args:
+        points, weights: of all sections but the `cut` ones, each with its element, section, points and weights.
+        sections: number of elements and of the sections of each.
+    """
+    places = np.broadcast_to(points, (*sections, *points.shape)).copy()
+    shares = np.broadcast_to(weights, (*sections, len(weights))).copy()
+    for cell, section, own_points, own_weights in cut:
+        places[cell, section], shares[cell, section] = own_points, own_weights
+    return places, shares

@@ -28,15 +28,12 @@ def cut_sections(placement: Placement, outline: Outlined | None = None) -> tuple
     return np.where(cut, np.cumsum(cut.ravel()).reshape(cut.shape) - 1, -1), left
 
 
-def section_points(rule: DiskRule, placement: Placement) -> tuple[np.ndarray, np.ndarray]:
-    """Points of all sections in wire radii, (n, g, points, 2), and their shares of the disk, (n, g, points)."""
+def cut_points(rule: DiskRule, placement: Placement) -> list[tuple[int, int, np.ndarray, np.ndarray]]:
+    """Element, section, points in wire radii and shares of the disk of the sections that grinding has cut."""
     which, cut = cut_sections(placement, rule.outline)
-    places = np.broadcast_to(rule.points, (*which.shape, *rule.points.shape)).copy()
-    weights = np.broadcast_to(rule.weights, (*which.shape, len(rule))).copy()
-    for section, at in zip(cut, np.argwhere(which >= 0), strict=True):
-        left = section.rule(len(rule))
-        places[*at], weights[*at] = left.points, left.weights
-    return places, weights
+    rules = [section.rule(len(rule)) for section in cut]
+    places = np.argwhere(which >= 0)
+    return [(int(k), int(g), left.points, left.weights) for left, (k, g) in zip(rules, places, strict=True)]
 
 
 def points_and_rims(placement: Placement, radius: np.ndarray, curved: bool, rule: DiskRule) -> tuple[Ground, Ground]:

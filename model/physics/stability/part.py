@@ -12,7 +12,7 @@ from coilset.model.physics.stability.buckling import SIDEWAYS, buckling, leaning
 
 
 def _numbers(setup: Setup, result: Result) -> dict[str, Any]:
-    found = buckling(result.steps, setup.mean_diameter)
+    found = buckling(result.steps, setup.spring.mean_diameter)
     return {
         "buckled": found is not None,
         "buckling_travel_mm": found.travel_mm if found else None,
@@ -22,7 +22,7 @@ def _numbers(setup: Setup, result: Result) -> dict[str, Any]:
 
 
 def _buckled(setup: Setup, result: Result) -> Iterator[Warning]:
-    found, limit = buckling(result.steps, setup.mean_diameter), setup.buckling_travel
+    found, limit = buckling(result.steps, setup.spring.mean_diameter), setup.buckling_travel
     if found is not None:
         formula = f"at {limit:.4g} mm" if isfinite(limit) else "never, as long as the wire is elastic"
         message = (
@@ -46,9 +46,8 @@ def _unstable(setup: Setup, result: Result) -> Iterator[Warning]:
 
 def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
     before = [0.0, *(step.force_N for step in result.steps)]
-    snaps = [
-        (force, step) for force, step in zip(before, result.steps, strict=False) if snapped(step, setup.mean_diameter)
-    ]
+    pairs, diameter = zip(before, result.steps, strict=False), setup.spring.mean_diameter
+    snaps = [(force, step) for force, step in pairs if snapped(step, diameter)]
     if snaps:
         force, step = max(snaps, key=lambda snap: snap[1].released_energy_Nmm)
         times = "" if len(snaps) == 1 else f", {len(snaps)} times in all"
@@ -61,16 +60,16 @@ def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 def _leans(setup: Setup, result: Result) -> Iterator[Warning]:
-    if setup.spring.axis is not None or is_turned(setup, result.steps):  # drawn so, or pushed aside by its arms
+    if not setup.spring.is_straight or is_turned(setup, result.steps):  # drawn so, or pushed aside by its arms
         return
-    far = leaning(result.steps, setup.mean_diameter)
+    far = leaning(result.steps, setup.spring.mean_diameter)
     if far is not None:
         offset, place = far.axis_offset_mm, place_of(far)
         message = (
             f"the spring leans without buckling: its axis is up to {offset:.3g} mm aside, at a travel of "
-            f"{far.travel_mm:.4g} mm, {100.0 * offset / setup.mean_diameter:.2g} % of its mean diameter"
+            f"{far.travel_mm:.4g} mm, {100.0 * offset / setup.spring.mean_diameter:.2g} % of its mean diameter"
         )
-        yield Warning("leans", place, message, offset, SIDEWAYS * setup.mean_diameter, "mm")
+        yield Warning("leans", place, message, offset, SIDEWAYS * setup.spring.mean_diameter, "mm")
 
 
 PART = Part(numbers=_numbers, seen=(_buckled, _unstable, _snapped), found=(_leans,))

@@ -100,7 +100,7 @@ class Stability:
         Args:
             setup, result: records of the run so far.
         """
-        if not setup.slender or buckling(result.steps, setup.mean_diameter) is not None:
+        if not setup.slender or buckling(result.steps, setup.spring.mean_diameter) is not None:
             return None
         return self.weakest(self.iteration.load)
 
@@ -135,7 +135,7 @@ class Stability:
             setup, result: records of the run so far.
             travel, force, offset: of the trial state, mm and N.
         """
-        if is_skipped(result.steps, State(travel, force, offset), setup.mean_diameter):
+        if is_skipped(result.steps, State(travel, force, offset), setup.spring.mean_diameter):
             return "the spring buckles in this step, and shorter ones show where"
         return None
 

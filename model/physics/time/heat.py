@@ -17,7 +17,8 @@ from coilset.model.core.material.law.law import Law
 from coilset.model.core.rod.rod import Rod
 from coilset.model.core.rod.section_states import CLOCKS
 from coilset.model.core.section.fibres import FibreSections
-from coilset.model.core.section.kinds import section_points
+from coilset.model.core.section.kinds import cut_points
+from coilset.model.core.section.rules import spread
 from coilset.model.physics.time.creep.law import HOURS, TEMPERATURE
 from coilset.model.physics.time.heat_equation import HeatConstants, HeatEquation
 
@@ -56,7 +57,8 @@ class WireHeat:
         stretch[: len(rod.radius)] = rod.placement.stretch
         assert isinstance(rod.sections, FibreSections)
         bend = rod.placement.curvature if rod.sections.curved else np.zeros_like(rod.placement.curvature)
-        places, weights = section_points(rod.rule, rod.placement)
+        rule, cut = rod.rule, cut_points(rod.rule, rod.placement)
+        places, weights = spread(rule.points, rule.weights, bend.shape, cut)
         g = 1.0 - bend[..., None] * rod.radius[:, None, None] * places[..., 0]
         left[: len(rod.radius)] = np.sum(weights * g, axis=-1)  # 1 of a round section, whose centre is on its axis
         self._weights = weights * g

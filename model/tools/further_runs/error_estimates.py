@@ -215,7 +215,7 @@ class _Watch:
             usual, shape = SectionSpec(kind="warping"), case.wire_shape
             finer = outline.rule(max(len(usual.build(shape=shape)), len(rule)))
             self.warping = follow(WARPING, "warping", finer, usual.polynomials(shape))
-        self.coil, self.greatest = 0.5 * companion.setup.mean_diameter, 0.0
+        self.coil, self.greatest = 0.5 * companion.setup.spring.mean_diameter, 0.0
         self.seen, self.at = list[_Seen](), dict[int, int]()  # and which of them is that of a step, by its number
 
     def __call__(self, step: Step) -> None:
@@ -272,7 +272,7 @@ def _judged(
     setup, result, seen, radius = analysis.setup, analysis.result, watch.seen, watch.radius
     at = {_place(step): watch.at[step.number] for step in companion.result.steps}
     steps, found = list[Step](), list[_StepErrors]()
-    coil = 0.5 * setup.mean_diameter
+    coil = 0.5 * setup.spring.mean_diameter
     greatest = max(step.load(coil) for step in result.steps)
     before, stiffness = (0.0, 0.0), result.rate
     for step in result.steps:

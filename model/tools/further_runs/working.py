@@ -103,7 +103,7 @@ def _stand_free(history: LoadHistory) -> None:
     ends.let_go()
     x = history.layout.gather(history.rod.x)
     if history.case.ends == "seats":
-        lowest = float((x[:, 2] - setup.spring.seat_distance(setup.turns, "bottom")).min())
+        lowest = float((x[:, 2] - setup.spring.below).min())
         ends.stand(lowest, setup.outer_length(x))
     else:
         history.system.attach()

@@ -33,6 +33,7 @@ class Member:
 
     name: str
     case: Case
+    spring: Spring
     setup: Setup
     result: Result | None
 
@@ -151,12 +152,12 @@ def _run(nest: Nest, number: int, program: list[Phase], report: Callable[[str, S
     with naming(nest.files[number]):
         analysis = Analysis(case.model_copy(update={"loading": loading}), MPI.COMM_SELF, threads=threads)
     if not program:
-        return Member(name, case, analysis.setup, None)
+        return Member(name, case, analysis.spring, analysis.setup, None)
     try:
         analysis.run(lambda step: report(name, step))
     except SolveError as error:
         raise SolveError(f"{name}: {error}") from None
-    return Member(name, analysis.case, analysis.setup, analysis.result)
+    return Member(name, analysis.case, analysis.spring, analysis.setup, analysis.result)
 
 
 def _steps(member: Member, heights: Plan) -> list[Step | None]:
@@ -177,7 +178,7 @@ def _clearance(members: Sequence[Member], steps: Sequence[Sequence[Step | None]]
     """Room between the springs after every step of the plan, mm."""
     far = []
     for member, own, reach in zip(members, steps, (inside, outside), strict=True):
-        spring, turns, frames = member.setup.spring, member.setup.turns, member.result.frames if member.result else []
+        spring, turns, frames = member.spring, member.setup.turns, member.result.frames if member.result else []
         start = reach(spring, turns, spring.centre_line(turns))
         far.append([start if step is None else reach(spring, turns, frames[step.number - 1].x) for step in own])
     room, reach = np.array(far)

@@ -7,9 +7,9 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.compose.analysis import Analysis
 from coilset.model.core.case.case import check
 from coilset.model.core.material import library
-from coilset.model.core.section.rules import polar, rim
+from coilset.model.core.section.rules import polar, rim, spread
 from coilset.model.core.section.shape import curved_shape
-from coilset.model.physics.outlines.ground import section_points
+from coilset.model.physics.outlines.ground import cut_points
 from coilset.model.physics.outlines.outlined_section import Segment
 from coilset.verification.cases.sections.ground_sections import CutCoil, slice_rate
 from coilset.verification.one_section.slice_references import ring_sector
@@ -78,7 +78,7 @@ def test_a_whole_disk_warps_in_a_coil_as_the_sector_of_a_ring(index):
 def test_the_flat_of_a_spring_is_its_seat():
     """Points on the line that bounds a section lie in the plane of the seat, and its other points above it."""
     analysis = Analysis(check(CASE))
-    spring, place, rod = analysis.spring, analysis.setup.placement, analysis.rod
+    spring, place, rod = analysis.spring, analysis.rod.placement, analysis.rod
     cut = place.flat[..., 0] < 1.0
     tips = 2 * 0.25 * SPRING["wire_diameter"]
     assert cut[[0, -1]].all()
@@ -86,7 +86,7 @@ def test_the_flat_of_a_spring_is_its_seat():
     turns = analysis.setup.section_turns
     assert turns[cut][turns[cut] < 3].max() == pytest.approx(spring.flat_turns("bottom"), abs=0.06)
     assert spring.free_length - spring.centre_line(5.5)[2] == pytest.approx(tips / 2 - 2.5)
-    places, weights = section_points(rod.rule, place)
+    places, weights = spread(rod.rule.points, rod.rule.weights, cut.shape, cut_points(rod.rule, place))
     assert weights[~cut].sum(axis=-1) == pytest.approx(1.0)
     for cell in (0, 5, len(cut) - 1):
         t = spring.tangent(turns[cell, 1])
@@ -121,7 +121,7 @@ def test_chords_are_cut_as_the_true_sections_are():
 def test_springs_that_are_not_ground_are_whole():
     spring = SpringSpec(**SPRING | {"end_coils": "closed"})
     analysis = Analysis(check(CASE | {"spring": spring.model_dump(exclude_none=True)}))
-    assert np.isinf(analysis.setup.placement.flat[..., 0]).all()
+    assert np.isinf(analysis.rod.placement.flat[..., 0]).all()
 
 
 @pytest.mark.parametrize("level", [0.5, -0.5])

@@ -43,7 +43,7 @@ class Ledger:
         self.analysis, turns = analysis, analysis.setup.turns
         _, _, length = gauss_points(analysis.spring, turns[:-1], turns[1:], analysis.rod.element.xi)
         section = np.pi * analysis.setup.wire_radius[:, None] ** 2 * length * analysis.rod.element.weights
-        points, κ = analysis.rod.rule, analysis.setup.placement.curvature
+        points, κ = analysis.rod.rule, analysis.setup.sections.curvature
         g = 1.0 - κ[..., None] * analysis.setup.wire_radius[:, None, None] * points.points[:, 0]  # fibre over axis
         self.volume = section[..., None] * g * points.weights
         self.history = np.zeros((*self.volume.shape, analysis.law.columns(3)))

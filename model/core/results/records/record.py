@@ -7,16 +7,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from coilset.meshes.springs.ends import ENDS
-from coilset.meshes.springs.geometry import Spring
-from coilset.meshes.springs.placement import Placement
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.results import surface
+from coilset.model.core.results.records.drawn import Drawn, SectionPoints
 from coilset.model.core.results.records.frame import Frame
 from coilset.model.core.results.records.units import words_and_unit
-from coilset.model.core.rod.elements import Element
-from coilset.model.core.section.rules import DiskRule
 
+ENDS = ("bottom", "top")
 AT_REST = 1e-6  # of the greatest load so far, and of the height: what changes by less stays as it is
 
 
@@ -340,18 +337,15 @@ class Setup:
     """Description of a run: spring, mesh, load program, limits.
 
     Attributes:
-        spring: geometry of the spring.
+        spring: the stress-free spring, Drawn.
         material: name of the law.
         ends: `seats` or `clamped`.
         phases: labels of the load program.
         forces_given, torques_given: of each phase, whether it ends at a given axial force, or at a torque of a head.
         turns: of the stations, shape (n + 1,).
         wire_radius: of the elements, shape (n,), mm.
-        rule: DiskRule.
         contacts: ContactRecords.
-        section_kind: plane, curved or warping.
-        element: Element.
-        placement: of the sections, Placement.
+        sections: SectionPoints.
         buckling_travel: at which the spring buckles after EN 13906-1, mm; infinite if it never does.
         limits: Limits.
         rates_at: travels, mm, at which the rate is requested.
@@ -364,7 +358,7 @@ class Setup:
         bounds: Limits of results.
     """
 
-    spring: Spring
+    spring: Drawn
     material: str
     ends: str
     phases: tuple[str, ...]
@@ -372,11 +366,8 @@ class Setup:
     torques_given: tuple[bool, ...]
     turns: np.ndarray
     wire_radius: np.ndarray
-    rule: DiskRule
     contacts: tuple[ContactRecord, ...]
-    section_kind: str
-    element: Element
-    placement: Placement
+    sections: SectionPoints
     buckling_travel: float
     limits: Limits
     rates_at: tuple[float, ...] = ()
@@ -404,22 +395,17 @@ class Setup:
     @property
     def section_turns(self) -> np.ndarray:
         """Turns of the sections, shape (n, sections)."""
-        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * self.element.xi
+        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * self.sections.abscissae
 
     @cached_property
     def inside(self) -> surface.Inside:
         """Position of the inside of the coil on the wire's surface; plane sections have that of manufacture."""
-        return surface.Inside.of(bool(self.placement.curvature.any()), self.spring.hand)
-
-    @cached_property
-    def mean_diameter(self) -> float:
-        """Mean diameter of the coil at half of its turns, mm."""
-        return 2.0 * float(self.spring.mean_radius(0.5 * self.spring.turns))
+        return surface.Inside.of(bool(self.sections.curvature.any()), self.spring.hand)
 
     def outer_length(self, x: np.ndarray) -> float:
         """Height of the wire between two planes across the axis that just touch it, stations at `x`, mm."""
-        top = x[:, 2] + self.spring.seat_distance(self.turns, "top")
-        bottom = x[:, 2] - self.spring.seat_distance(self.turns, "bottom")
+        top = x[:, 2] + self.spring.above
+        bottom = x[:, 2] - self.spring.below
         return float(top.max() - bottom.min())
 
 

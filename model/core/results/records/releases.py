@@ -55,12 +55,12 @@ def is_turned(setup: Setup, steps: Sequence[Step]) -> bool:
         for name in ("turn_deg", "torque_Nmm", "force_N", "travel_mm")
     )
     kept = travel < STILL * setup.spring.free_length
-    return turn > LEAST_TURN and (kept or torque > TURNED * 0.5 * setup.mean_diameter * force)
+    return turn > LEAST_TURN and (kept or torque > TURNED * 0.5 * setup.spring.mean_diameter * force)
 
 
 def turned_radius(setup: Setup, steps: Sequence[Step]) -> float:
     """The coil's mean radius, mm, at which travel and force of a run that turns its spring are measured; else 0."""
-    return 0.5 * setup.mean_diameter if is_turned(setup, steps) else 0.0
+    return 0.5 * setup.spring.mean_diameter if is_turned(setup, steps) else 0.0
 
 
 def set_of(release: Release, radius: float) -> float:
