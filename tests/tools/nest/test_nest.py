@@ -91,7 +91,7 @@ def member(length, *errors):
     of_run = SimpleNamespace(total=Errors(*errors, None)) if errors else None
     result = SimpleNamespace(complete=True, snapshots=[shot], errors=of_run)
     setup = SimpleNamespace(outer_length=lambda _: length)
-    return Member("", None, setup, result)
+    return Member("", None, None, setup, result)
 
 
 def test_errors_of_a_nest_are_those_of_both_springs():
