@@ -157,7 +157,8 @@ def _points(path: Path) -> tuple[float | None, float | None, float | None]:
     """`Found.residual`, `ring` and `growth`; None for each without the file."""
     if not path.exists():
         return None, None, None
-    with reading(path), read_netcdf(path) as data:
+    with reading(path):
+        data = read_netcdf(path)
         return *_residual(data), _growth(data)
 
 

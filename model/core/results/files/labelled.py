@@ -30,8 +30,8 @@ def labelled(folder: str | Path) -> xr.Dataset:
     """
     folder = Path(folder)
     if (folder / "sweep.nc").is_file():
-        with reading(folder / "sweep.nc"), read_netcdf(folder / "sweep.nc") as file:
-            return file.load()
+        with reading(folder / "sweep.nc"):
+            return read_netcdf(folder / "sweep.nc")
     if is_slice(folder):
         return _slice(folder)
     run = open_run(folder)

@@ -1,20 +1,22 @@
 """Labelled arrays and their NetCDF file, without the libraries for reading such files, which are slow to load."""
 
+import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coilset.model.core.results.files.child import in_child
 from coilset.model.core.results.files.folder import whole
 
 if TYPE_CHECKING:  # slow to load
     from xarray import Dataset
 
 PACKED = 1000  # bytes of numbers for each of the file, at most, as zlib packs zeros
+ABOUT = "about/"  # no name of a variable has a slash
 HEADER = 1 << 20  # maximum number of bytes of a file besides its numbers
 
 
@@ -77,14 +79,23 @@ def reserve(path: Path, size: int) -> None:
             os.posix_fallocate(file.fileno(), 0, size + HEADER)
 
 
-@contextmanager
-def read_netcdf(path: str | Path) -> Iterator["Dataset"]:
-    """A NetCDF file as xarray's Dataset, whose values are read when they are used.
+def read_netcdf(path: str | Path) -> "Dataset":
+    """A NetCDF file as xarray's Dataset, read in a child process.
 
     Raises:
-        ValueError: if it takes values from other files, or repeats one that it does not store, as HDF5 can. OSError: if
-            it is no such file.
+        ValueError: if it is no such file or a damaged one, takes values from other files, or repeats one that it does
+            not store, as HDF5 can.
     """
+    import h5netcdf  # noqa: F401  here once, not in each child
+    import xarray as xr
+
+    arrays = in_child(lambda: _plain(_opened(path)))
+    about = json.loads(str(arrays.pop(ABOUT)))
+    parts = {name: (dims, arrays[name], attrs) for name, (dims, attrs) in about["variables"].items()}
+    return xr.Dataset(parts, attrs=about["attrs"]).set_coords(about["coordinates"])
+
+
+def _opened(path: str | Path) -> "Dataset":
     import h5py
     import xarray as xr
 
@@ -102,7 +113,19 @@ def read_netcdf(path: str | Path) -> Iterator["Dataset"]:
     if claimed > PACKED * Path(path).stat().st_size:
         raise ValueError(f"its arrays claim {claimed:,} bytes, more than it can hold")
     with xr.open_dataset(path, engine="h5netcdf") as data:
-        yield data
+        return data.load()
+
+
+def _plain(data: "Dataset") -> dict[str, np.ndarray]:
+    """The values of a Dataset, words as numpy's, and ABOUT: all else of it, as JSON."""
+    arrays = {str(name): np.asarray(one.values) for name, one in data.variables.items()}
+    about = {
+        "variables": {name: (one.dims, one.attrs) for name, one in data.variables.items()},
+        "coordinates": list(data.coords),
+        "attrs": data.attrs,
+    }
+    words = {name: array.astype(str) for name, array in arrays.items() if array.dtype.kind == "O"}
+    return {**arrays, **words, ABOUT: np.array(json.dumps(about, default=lambda value: value.tolist()))}
 
 
 def write_netcdf(target: str | Path, data: Mapping[str, Variable], attrs: Mapping[str, str]) -> None:

@@ -76,8 +76,8 @@ def open_run(folder: str | Path) -> Run:
             raise InputError(f"{problem}{hint}", "", folder)
     with reading(folder / "summary.json"):
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-    with reading(folder / "points.nc"), read_netcdf(folder / "points.nc") as file:
-        data = current_names(file.load())
+    with reading(folder / "points.nc"):
+        data = current_names(read_netcdf(folder / "points.nc"))
     for name in ("history", "seats"):
         with reading(folder / f"{name}.csv"):
             data = data.merge(table(folder / f"{name}.csv"), compat="override", join="outer")
