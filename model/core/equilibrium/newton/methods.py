@@ -18,6 +18,7 @@ from coilset.model.core.base.errors import InputError
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu"}
 ON_RANKS = "coilset.model.core.equilibrium.system.factors.GatheredLU"
 RENEWAL = 10
+FEW = 3  # of Broyden's method: with five, it does not pass the closing of coils that are as stiff as E/4 or E/10
 # The zero of the out-of-balance work may lie beyond a whole correction: PETSc's searches may lengthen it at will.
 UNLIMITED = {LONGEST_STEP: 1e8}
 # one Newton step: PETSc's Broyden and Anderson methods use no matrix, but such a step as a preconditioner
@@ -69,7 +70,7 @@ METHODS: dict[str, dict[str, Any]] = {  # each MethodName
     "broyden": {
         "snes_type": "qn",
         "snes_qn_type": "broyden",
-        "snes_qn_m": 5,
+        "snes_qn_m": FEW,
         "snes_qn_restart_type": "periodic",
         "snes_linesearch_type": "cp",
         **UNLIMITED,
@@ -77,7 +78,7 @@ METHODS: dict[str, dict[str, Any]] = {  # each MethodName
         "snes_npc_side": "left",
         "snes_function_type": "unpreconditioned",
         **PRECONDITIONED,
-        "npc_snes_lag_jacobian": 5,
+        "npc_snes_lag_jacobian": FEW,
     },
     # the load factor as one more unknown: passes limit points within a step; the arc is measured in displacements
     "arc-length": {"snes_type": "newtonal", "snes_newtonal_psisq": 0.0, "snes_max_it": 30, **DIRECT},
