@@ -11,7 +11,12 @@ and released, with G = 79,300 N/mm² (an estimate for steel), stress σ₀ + H �
 with closed and ground ends between seats, whose turns follow from the weight and whose ground tips from the closed
 height.
 
-What is judged is what the yield stress was not fitted to: the force when closed must lie between the loads read (the
+That rod is pressed with the greatest of the loads read, and closes where it comes to stand on a wall
+(`coilset.model.compose.warnings`): where one per cent of travel takes more than 20 per cent of force, at 12,010 to
+12,250 N with 10, 20 and 32 elements a turn and contact stiffnesses of E/4 and 4 E. The force at the geometry's block
+height is no result: it is beyond the closing and the contacts' own, 12,320 N with E/40 and 22,320 N with E/4.
+
+What is judged is what the yield stress was not fitted to: the force at closing must lie between the loads read (the
 mean of 2,600 and 3,000 pounds, ± half their difference), and the gap that follows from weight and heights must be the
 one stated, within 5 %. The height afterwards is what the yield stress was fitted to, to 0.1 mm.
 """
@@ -29,10 +34,12 @@ from scipy.optimize import brentq
 
 from coilset.model.compose.analysis import Analysis
 from coilset.model.compose.summary import summarise
+from coilset.model.compose.warnings import WALL
 from coilset.model.core.base.style import STYLE
 from coilset.model.core.case import Case, check
 from coilset.model.core.material.law.file import MaterialFile
 from coilset.model.core.material.law.law import Law
+from coilset.model.core.results.records.record import Result
 from coilset.model.physics.uniform_coil.rod import press
 from coilset.verification.study import Study
 
@@ -49,10 +56,7 @@ SHEAR_MODULUS, POISSON, DENSITY = 79300.0, 0.29, 7.85e-6  # N/mm², 1, kg/mm³
 HARDENING = (0.0, 5000.0, 20000.0)  # dσ/dεᵖ, N/mm²
 YIELD = (900.0, 1800.0)  # N/mm², between which it is sought
 END = 0.3  # plastic strain up to which stress rises
-UNMET = (
-    "once coils are closed, the force rises by 29,000 N/mm, so that 0.35 mm of height are the whole "
-    "deviation; why this run goes further than an earlier one is open"
-)
+NEAR, STEPS = 2.0, 60  # above the closed height, mm, from where the coils close; steps of the load from there
 
 
 def steel(yield_stress: float, hardening: float) -> dict[str, Any]:
@@ -112,7 +116,11 @@ def whole_spring(path: Path, yield_stress: float, hardening: float) -> Case:
             {
                 "spring": spring,
                 "material": str(path),
-                "loading": [{"to": "block"}, {"to": {"force": 0}}],
+                "loading": [
+                    {"to": {"height": float(CLOSED.mean()) + NEAR}},
+                    {"to": {"force": float(LOADS.max())}, "steps": STEPS},
+                    {"to": {"force": 0}},
+                ],
                 "mesh": {"elements_per_turn": 10, "section": {"radial": 4, "angular": 12}},
             }
         )
@@ -158,7 +166,7 @@ def run(study: Study) -> None:
         "absolute",
     )
     study.check(
-        "force when closed, rod with this yield stress, N",
+        "force at closing, rod with this yield stress, N",
         force,
         middle,
         "Watertown Arsenal 1900, loads",
@@ -166,11 +174,18 @@ def run(study: Study) -> None:
         "absolute",
     )
     study.table(
-        "Yield stress, N/mm², for minimum, mean and maximum height after; force when closed for the mean, N",
+        "Yield stress, N/mm², for minimum, mean and maximum height after; force at closing for the mean, N",
         ["H in N/mm²", "minimum", "mean", "maximum", "force"],
         rows,
     )
     study.figure("watertown", draw(after, force, stress))
+
+
+def closing(result: Result) -> float:
+    """Force from which the rod stands on a wall, in its second phase, N; NaN where it never does."""
+    travels, forces = np.array([(step.travel_mm, step.force_N) for step in result.steps if step.phase == 1]).T
+    solid = np.diff(forces) / forces[1:] > WALL * np.diff(travels) / travels[1:]
+    return float(forces[np.argmax(solid)]) if solid.any() else np.nan
 
 
 def rod_explaining(mean: float) -> tuple[float, float, float, float]:
@@ -186,8 +201,10 @@ def rod_explaining(mean: float) -> tuple[float, float, float, float]:
         for _ in range(3):
             case = whole_spring(Path(folder) / "steel.yaml", stress, hardening)
             analysis = Analysis(case, MPI.COMM_SELF)
-            summary = summarise(analysis.setup, analysis.run())
-            seen.append((stress, summary["free_length_after_mm"], summary["force_max_N"]))
+            result = analysis.run()
+            summary = summarise(analysis.setup, result)
+            force = closing(result)
+            seen.append((stress, summary["free_length_after_mm"], force))
             if len(seen) > 1:
                 slope = (seen[-1][1] - seen[-2][1]) / (seen[-1][0] - seen[-2][0])
             stress -= (seen[-1][1] - mean) / slope
