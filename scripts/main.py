@@ -94,7 +94,8 @@ def solve(
     interactive: bool = typer.Option(
         False, "--interactive", help="pause after each step; Enter continues, ? shows help"
     ),
-    quiet: bool = typer.Option(False, "--quiet", help="print warnings and errors only"),
+    quiet: bool = typer.Option(False, "--quiet", help="print the answer alone: checks and numbers"),
+    steps: bool = typer.Option(False, "--steps", help="print a table of the steps, a line for each phase and more"),
     json: bool = typer.Option(False, "--json", help="print a line of JSON a step, for scripts"),
     verbose: bool = typer.Option(False, "--verbose", help="print each step and each iteration: norm, step length"),
     method: str = typer.Option(None, help="iteration method: newton, modified-newton, bfgs, broyden, arc-length, ..."),
@@ -103,9 +104,10 @@ def solve(
     """Take a spring through its load program and write the results."""
     from coilset.scripts.terminal.drawing import Drawings
 
-    given = [name for name, wanted in (("quiet", quiet), ("json", json), ("verbose", verbose)) if wanted]
+    ways = {"quiet": quiet, "steps": steps, "json": json, "verbose": verbose}
+    given = [name for name, wanted in ways.items() if wanted]
     if len(given) > 1:
-        raise InputError("are three ways to print a run; give one of them", "--quiet, --json, --verbose")
+        raise InputError("are ways to print a run; give one of them", ", ".join(f"--{name}" for name in given))
     if not (quiet or json):
         announce_begin(case, out)
     settings = [*settings, f"solver.method={method}"] if method else settings

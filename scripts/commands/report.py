@@ -53,7 +53,7 @@ def _solve_found(folder: Path) -> None:
     Console().say(f"solving {folder / 'found.yaml'} for its characteristic")
     found = subfolder(folder, design_page.FOUND)
     with contextlib.suppress(SolveError):  # the page shows it
-        solve(folder / "found.yaml", found, True, [], comm=MPI.COMM_SELF, voice="quiet")
+        solve(folder / "found.yaml", found, True, [], comm=MPI.COMM_SELF, voice="silent")
 
 
 def _check(folder: Path) -> None:

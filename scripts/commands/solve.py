@@ -7,6 +7,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 
@@ -21,6 +22,9 @@ from coilset.model.core.results.files.folder import DRAWN, RESULTS, clear, prepa
 from coilset.model.core.results.records.provenance import origin
 from coilset.model.core.results.records.record import Step
 from coilset.model.core.runtime.threads import usual
+from coilset.model.tools.checks.check import Check
+from coilset.model.tools.checks.table import checks
+from coilset.model.tools.sheet.from_results import of_steps
 from coilset.scripts.compiling import compile_first
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.drawing import Drawings
@@ -54,8 +58,8 @@ def solve(
     Raises:
         InputError, SolveError: after the results so far are written.
     """
+    voice = "verbose" if interactive and voice == "lines" else voice
     output = VOICES[voice](comm.rank == 0)
-    output.every |= interactive
     if interactive and comm.size > 1:
         raise InputError("works on one rank only; omit -n", "--interactive")
     if interactive and voice in ("quiet", "json"):
@@ -81,6 +85,13 @@ def _prepare(folder: Path, case: Case, force: bool, resume: bool) -> None:
             raise InputError("continues a run, and --overwrite discards it; give one of the two", "--resume")
         Checkpoint(folder, case).require()
     prepare(folder, force or resume)
+
+
+def _checks(analysis: Analysis, summary: dict[str, Any]) -> list[Check]:
+    """Of the spring and its run; none of a run without steps."""
+    if not analysis.result.steps:
+        return []
+    return checks(analysis.case, analysis.spring, of_steps(summary, analysis.result.steps))
 
 
 @dataclass
@@ -149,7 +160,7 @@ def _solve(first: Analysis, runs: _Runs, drawings: Drawings | None) -> None:
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
     on_first_rank(comm, lambda: write_run(folder, analysis.setup, analysis.result, summary, origin(analysis.case)))
-    output.conclude(summary, folder)
+    output.conclude(summary, _checks(analysis, summary) if comm.rank == 0 else [], folder)
     for warning in summary["warnings"]:
         log.warning("warning: %s: %s", warning["name"], warning["message"])
     if drawings and analysis.result.steps and not runs.interrupt.hurries:  # without steps there is nothing to draw

@@ -20,7 +20,8 @@ from coilset.model.core.contact.base import SEAT_DOFS
 from coilset.model.core.results.quantities import quantities
 from coilset.model.core.results.records.labels import lives_text, within
 from coilset.model.core.results.records.record import ContactRecord, SeatReactions, Step
-from coilset.model.core.results.records.units import words_and_unit
+from coilset.model.tools.checks.check import HEADS, Check, Verdict, sentence
+from coilset.model.tools.checks.warnings import told
 from coilset.scripts.terminal.console import Console, styled, table
 
 if TYPE_CHECKING:  # not where a rod is solved
@@ -31,16 +32,103 @@ HEAD = f"{PRESSED}{'iter.':>6}"  # of `step_row`
 TURNED = f"{PRESSED}{'turn/°':>9}{'torque/N mm':>13}{'iter.':>6}"  # of a spring that is turned, too
 TURN = 5  # the freedom of a head about the axis, of SEAT_DOFS
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
+LATER = 20.0  # seconds, before the first line of progress where it is not a terminal
 OFTEN = 1.0  # seconds, at least, from one row to the next within a phase
 SPARSE = 0.1  # of the time since the beginning, likewise
 
 
 class Lines:
-    """A line for each phase, and for steps in between as time passes, and a table at the end; colours on a terminal
-    only.
+    """One line of progress, then the answer: checks, numbers, and warnings; colours on a terminal only.
+
+    On a terminal the line is written over and over; elsewhere another one follows as the time doubles.
 
     Args:
         talks: False on ranks that print nothing.
+    """
+
+    def __init__(self, talks: bool = True) -> None:
+        self.console = Console(quiet=not talks)
+        self._began, self._from = 0.0, -1.0  # when and where the first step ended; below 0 before
+        self._start = self._said = 0.0  # when the first run began, and progress was last printed
+        self._open = False  # whether a line of progress is to be written over
+
+    def say(self, text: str) -> None:
+        """A line about the run."""
+        self._close()
+        self.console.say(text)
+
+    def warn(self, text: str) -> None:
+        """A warning."""
+        self._close()
+        self.console.warn(text)
+
+    def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
+        """The run begins or continues."""
+        self.analysis, self._from, self._start = analysis, -1.0, time.monotonic()
+        self._said = self._start
+        targets = ", ".join(phase.label for phase in analysis.case.loading)
+        elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size
+        self.say(f"{Path(case_file).name}: {elements} elements, to {targets}{f', {ranks} ranks' * (ranks > 1)}")
+        if resumed and _done(analysis) >= 1.0:
+            self.say(f"all {analysis.continuation.number} steps are there: only the results are written again")
+        elif resumed:
+            self.say(f"continuing after step {analysis.continuation.number}")
+
+    def again(self, analysis: Analysis, finer: str) -> None:
+        """A finer run of the same case begins or continues; `finer` names what is finer."""
+        self.analysis, self._from = analysis, -1.0
+        self.say(f"the estimated error exceeds the accuracy: again with {finer}")
+
+    def step(self, step: Step) -> None:
+        """A step has been found."""
+        waiting, now = self._left(step), time.monotonic()
+        text = f"step {step.number}, {step.seat_height_mm:.5g} mm, {step.force_N:.5g} N{waiting}"
+        if self.console.is_terminal and not self.console.quiet:
+            self.console.file.write(f"\r\x1b[2K{text[: self.console.width - 1]}")
+            self.console.file.flush()
+            self._open = True
+        elif now - self._start > max(LATER, 2.0 * (self._said - self._start)):
+            self._said = now
+            self.console.print(text, soft_wrap=True)
+
+    def _close(self) -> None:
+        """Remove the line of progress."""
+        if self._open:
+            self.console.file.write("\r\x1b[2K")
+            self._open = False
+
+    def _left(self, step: Step) -> str:
+        """Remaining time at the speed since the first step, which may compile; empty if it is short, or unknown."""
+        done = _done(self.analysis, step)
+        if self._from < 0.0:
+            self._began, self._from = time.monotonic(), done
+        spent = time.monotonic() - self._began
+        left = spent * (1.0 - done) / max(done - self._from, 1e-9)
+        return "" if spent < SOON or left < SOON else f"  {duration(left)} left"
+
+    def iterations(self) -> contextlib.AbstractContextManager[None]:
+        """Context of the iterations of a run."""
+        return contextlib.nullcontext()
+
+    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+        """Print the results and the checks of the spring; warnings last, the most important one first."""
+        self._answer(summary, made)
+        self.console.say(f"  results in {out}{os.sep}", whole=True)
+        for message in told(summary):
+            self.warn(message)
+
+    def _answer(self, summary: Mapping[str, Any], made: Sequence[Check]) -> None:
+        self._close()
+        check_lines(self.console, made)
+        self.console.quantities(quantities(summary))
+        if summary["working"]:
+            self.console.print(working_table(summary["working"]))
+        if summary["fatigue"]:
+            self.console.print(fatigue_table(summary["fatigue"]))
+
+
+class Steps(Lines):
+    """A line for each phase, and for steps in between as time passes.
 
     Attributes:
         every: whether each step has its line.
@@ -49,39 +137,20 @@ class Lines:
     every = False
 
     def __init__(self, talks: bool = True) -> None:
-        self.console = Console(quiet=not talks)
+        super().__init__(talks)
         self._turned = False  # whether the load program turns a head
-        self._began, self._from = 0.0, -1.0  # when and where the first step ended; below 0 before
-        self._start = self._said = 0.0  # when the first run began, and the last row was printed
         self._unsaid: Step | None = None  # the last step, if it has no row
-
-    def say(self, text: str) -> None:
-        """A line about the run."""
-        self.console.say(text)
-
-    def warn(self, text: str) -> None:
-        """A warning."""
-        self.console.warn(text)
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
         """The run begins or continues."""
-        self.analysis, self._from, self._start = analysis, -1.0, time.monotonic()
-        for warning in analysis.setup.warnings:
-            self.warn(warning.message)
-        targets = ", ".join(phase.label for phase in analysis.case.loading)
-        elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size
-        self.say(f"{Path(case_file).name}: {elements} elements, to {targets}{f', {ranks} ranks' * (ranks > 1)}")
-        if resumed and _done(analysis) >= 1.0:
-            self.say(f"all {analysis.continuation.number} steps are there: only the results are written again")
-            return
-        if resumed:
-            self.say(f"continuing after step {analysis.continuation.number}")
-        self._head()
+        super().begin(analysis, case_file, resumed)
+        if _done(analysis) < 1.0:
+            self._head()
 
     def again(self, analysis: Analysis, finer: str) -> None:
         """A finer run of the same case begins or continues; `finer` names what is finer."""
-        self.analysis, self._from, self._unsaid = analysis, -1.0, None
-        self.say(f"the estimated error exceeds the accuracy: again with {finer}")
+        super().again(analysis, finer)
+        self._unsaid = None
         self._head()
 
     def _head(self) -> None:
@@ -117,36 +186,14 @@ class Lines:
             return step_row(step)
         return f"{_pressed(step)}{step.turn_deg:z9.2f}{step.torque_Nmm:z13.1f}{step.iterations:6d}"
 
-    def _left(self, step: Step) -> str:
-        """Remaining time at the speed since the first step, which may compile; empty if it is short, or unknown."""
-        done = _done(self.analysis, step)
-        if self._from < 0.0:
-            self._began, self._from = time.monotonic(), done
-        spent = time.monotonic() - self._began
-        left = spent * (1.0 - done) / max(done - self._from, 1e-9)
-        return "" if spent < SOON or left < SOON else f"  {duration(left)} left"
-
-    def iterations(self) -> contextlib.AbstractContextManager[None]:
-        """Context of the iterations of a run."""
-        return contextlib.nullcontext()
-
-    def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
+    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
         """Print the results, after the last step of a run that ended early."""
         if self._unsaid is not None:
             self._print(self._unsaid)
-        self.console.quantities(quantities(summary))
-        if summary["working"]:
-            self.console.print(working_table(summary["working"]))
-        for limit in summary["limits"]:
-            self.console.print(limit_line(limit), soft_wrap=True)
-        if summary["fatigue"]:
-            self.console.print(fatigue_table(summary["fatigue"]))
-        self.console.say(f"  results in {out}{os.sep}", whole=True)
-        for warning in summary["warnings"]:
-            self.warn(warning["message"])
+        super().conclude(summary, made, out)
 
 
-class Verbose(Lines):
+class Verbose(Steps):
     """A line for each step and each iteration."""
 
     every = True
@@ -168,18 +215,27 @@ class Verbose(Lines):
 
 
 class Quiet(Lines):
-    """Warnings alone."""
+    """The answer alone."""
 
     def say(self, text: str) -> None:
+        """Nothing."""
+
+    def warn(self, text: str) -> None:
         """Nothing."""
 
     def step(self, step: Step) -> None:
         """Nothing."""
 
-    def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
-        """The warnings that were not printed at the beginning."""
-        for warning in summary["warnings"]:
-            self.warn(warning["message"])
+    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+        """The checks and the numbers."""
+        self._answer(summary, made)
+
+
+class Silent(Quiet):
+    """Nothing at all."""
+
+    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+        """Nothing."""
 
 
 class JsonLines(Lines):
@@ -199,6 +255,8 @@ class JsonLines(Lines):
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
         """The case, its mesh and its load program."""
         super().begin(analysis, case_file, resumed)
+        for warning in analysis.setup.warnings:
+            self.warn(warning.message)
         self._put(
             "begin",
             case=Path(case_file).name,
@@ -218,12 +276,13 @@ class JsonLines(Lines):
         touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats)
         self._put("step", **asdict(step), touching=touching, done=_done(self.analysis, step))
 
-    def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
-        """The summary, as in summary.json."""
-        self._put("end", folder=str(out), summary=dict(summary))
+    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+        """The summary, as in summary.json, and the checks."""
+        checks = [asdict(one) | {"verdict": one.verdict.value, "reserve": one.reserve} for one in made]
+        self._put("end", folder=str(out), summary=dict(summary), checks=checks)
 
 
-VOICES = {"lines": Lines, "verbose": Verbose, "quiet": Quiet, "json": JsonLines}
+VOICES = {"lines": Lines, "steps": Steps, "verbose": Verbose, "quiet": Quiet, "json": JsonLines, "silent": Silent}
 
 
 def duration(seconds: float) -> str:
@@ -279,15 +338,26 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
     return made
 
 
-def limit_line(limit: Mapping[str, Any]) -> Text:
-    """Whether a limit is met, and by how much."""
-    words, unit = words_and_unit(limit["name"])
-    bounds = f"{limit['low']:.5g} to {limit['high']:.5g} {unit}"
-    if limit["value"] is None:
-        return Text(f"  {words}: no such result; limits {bounds}")
-    side = ("met", ", within by") if limit["met"] else (("not met", "bold red"), ", outside by")
-    value, margin = f"  {words} {limit['value']:.5g} {unit}: limits {bounds} ", f" {abs(limit['margin']):.3g} {unit}"
-    return Text.assemble(value, *side, margin)
+def check_lines(console: Console, made: Sequence[Check]) -> None:
+    """The table of checks, what they say together first; where limits are from follows on a line of its own."""
+    if not made:
+        return
+    failed = any(one.verdict is Verdict.NOT_PERMITTED for one in made)
+    console.print(styled("bold red" if failed else "bold", sentence(made)), soft_wrap=True)
+    rows = [one.cells for one in made]
+    widths = [max(len(row[k]) for row in (HEADS, *rows)) for k in range(len(HEADS))]
+    for number, cells in enumerate((HEADS, *rows)):
+        name, *numbers, verdict = (f"{cell:{'<' if k in (0, 4) else '>'}{widths[k]}}" for k, cell in enumerate(cells))
+        line, style = f"  {name}  {'  '.join(numbers)}  ", "dim"
+        if not number:
+            console.print(styled("dim", f"{line}{verdict}".rstrip()), soft_wrap=True)
+            continue
+        one = made[number - 1]
+        fits = len(line) + len(verdict) + 2 + len(one.why) <= console.width
+        why = f"  {one.why}" if fits else f"\n      {one.why}"
+        shown = verdict if fits else verdict.rstrip()
+        style = {Verdict.NOT_PERMITTED: "bold red", Verdict.NOT_KNOWN: "yellow"}.get(one.verdict, "")
+        console.print(Text.assemble(line, (shown, style), (why.rstrip(), "dim")), soft_wrap=True)
 
 
 def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:

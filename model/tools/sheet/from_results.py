@@ -1,6 +1,7 @@
 """Quantities of the formulas as found in a results folder."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ from coilset.model.core.base.between_steps import UNKNOWN, Between, closed_rate,
 from coilset.model.core.base.columns import read_columns
 from coilset.model.core.base.errors import InputError, reading
 from coilset.model.core.results.files.netcdf import read_netcdf
+from coilset.model.core.results.records.record import Step
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -120,6 +122,18 @@ def _passed(at: np.ndarray, wanted: float, near: float, which: int) -> int | Non
     high, low = np.maximum(at[1:], at[:-1]), np.minimum(at[1:], at[:-1])
     passed = np.flatnonzero((low <= wanted + near) & (wanted - near <= high))
     return int(passed[which]) if len(passed) else None
+
+
+def of_steps(summary: dict[str, Any], steps: Sequence[Step]) -> Found:
+    """Of the records of a run, without what its section points show."""
+    before = summary["free_length_before_mm"]
+    columns = [[float(getattr(step, name)) for step in steps] for name in ("seat_height_mm", "force_N", "contacts")]
+    heights, forces = np.array([before, *columns[0]]), np.array([0.0, *columns[1]])
+    found = Found(summary, heights, forces, None, None, contacts=np.array([*columns[2][:1], *columns[2]]))
+    if summary.get("turn_max_deg") is None:
+        return found
+    turns, torques = (np.array([0.0, *(getattr(step, name) for step in steps)]) for name in ("turn_deg", "torque_Nmm"))
+    return replace(found, turns=turns, torques=torques)
 
 
 def read(folder: str | Path) -> Found:

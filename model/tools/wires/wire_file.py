@@ -207,6 +207,7 @@ class WireEntry(Strict):
     shear_modulus: Number
     density: Number
     shear_modulus_decrease: Number | None = None
+    highest_temperature: Number | None = None  # K, of use
     strength: Strength
     block_stress: Allowable
     elastic_limit: Number

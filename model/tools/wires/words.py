@@ -21,6 +21,7 @@ LABELS = {
     "shear_modulus": ("shear modulus G", "MPa"),
     "density": ("density", "kg/mm³"),
     "shear_modulus_decrease": ("decrease of G over its value", "1/K"),
+    "highest_temperature": ("highest temperature of use", "K"),
     "strength": ("minimum tensile strength Rm", "MPa"),
     "block_stress": ("shear stress allowed at block", "Rm"),
     "elastic_limit": ("elastic limit in tension", "Rm"),
