@@ -10,6 +10,7 @@ import numpy as np
 from coilset.model.compose.parts import parts
 from coilset.model.compose.warnings import run_warnings
 from coilset.model.core.base.package import package
+from coilset.model.core.results.records.closing import closing_entries
 from coilset.model.core.results.records.rates import rates, tension, turning
 from coilset.model.core.results.records.record import Errors, Result, Setup, Snapshot, Step
 from coilset.model.core.results.records.releases import Release, releases, turned_radius
@@ -62,6 +63,7 @@ def summary(setup: Setup, result: Result) -> Summary:
         rate_N_per_mm=result.rate if isfinite(result.rate) else None,
         **rates(setup, result, release),
         force_max_N=top.force_N if top else 0.0,
+        **closing_entries(setup, result.steps),
         force_max_is_given=top is not None and setup.is_force_given(top),
         force_max_height_mm=top.seat_height_mm if top else None,
         estimated_force_max_height_error_mm=top.estimated_height_error_mm if top else None,

@@ -7,6 +7,7 @@ from math import degrees
 from coilset.model.compose.parts import parts
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.results import surface
+from coilset.model.core.results.records.closing import VERTICAL, stands_on_wall, steepness
 from coilset.model.core.results.records.labels import CAUSES, NUMBERS, TURNED, apart, listed
 from coilset.model.core.results.records.part import Check, place_of
 from coilset.model.core.results.records.rates import FEW, tensions
@@ -16,9 +17,6 @@ from coilset.model.core.results.records.units import unit_of
 from coilset.model.core.results.stresses import shear_inside
 
 SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted sideways by 0.71 of their diameter
-# Change of the force over that of the travel, both in per cent, from which a spring counts as standing on a wall: a
-# spring of constant rate has 1, the example at block 1.1, the cone 160.
-WALL = 20.0
 WALL_FORCE = 0.002  # of the force, for which the warning states the height where no accuracy is required
 LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
 ROUNDING = 1e-3  # by which a limit that is given with few digits may be exceeded
@@ -106,23 +104,24 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
-    """At the end of a compression; a free spring that cools also gets shorter."""
+    """At the end of a compression, but to block, where it is no result; a free spring that cools also gets shorter."""
     accuracy, free = setup.limits.accuracy or WALL_FORCE, FREE * result.greatest_force
     for before, step in pairwise(result.steps):
         travel = step.travel_mm - before.travel_mm
         ends = step.phase == before.phase and step.progress >= 1.0 and travel > 0.0 and step.force_N > free
+        ends &= setup.phases[step.phase] != "block"
         if not ends or setup.is_force_given(step):  # the steeper it is, the smaller is the error of the height there
             continue
         rate = (step.force_N - before.force_N) / travel
-        percent = abs(rate) * step.travel_mm / step.force_N
-        if percent > WALL:
+        percent = steepness(before, step)
+        if percent > VERTICAL:
             height = accuracy * step.force_N / abs(rate)
             message = (
                 f"at {place_of(step)} the force changes by {rate:.3g} N/mm: the characteristic is "
                 f"nearly vertical, as coils are closed or slip, and {100 * accuracy:.2g} % of the force correspond to "
                 f"{height:.2g} mm of height"
             )
-            yield Warning("wall", place_of(step), message, percent, WALL)
+            yield Warning("wall", place_of(step), message, percent, VERTICAL)
 
 
 def _rise(step: Step) -> float:
@@ -167,8 +166,8 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     top = result.top
     if required is None or top is None or not top.force_N:
         return
-    if is_turned(setup, result.steps):  # these errors are those of a force along the axis, here close to zero
-        return
+    if is_turned(setup, result.steps) or stands_on_wall(setup, result.steps):
+        return  # a force along the axis, here close to zero, or one that is no result
     if top.steps_force_error_N is None:
         if not abs(top.force_N) <= FREE * result.rate * setup.spring.free_length:  # also where the rate is not known
             message = (
@@ -261,6 +260,8 @@ def allowed_errors(setup: Setup, result: Result) -> dict[str, float]:
     """
     required, release = setup.limits.accuracy or 0.0, last_release(setup, result)
     radius, found = turned_radius(setup, result.steps), {"force_N": allowed_force(setup, result)}
+    if stands_on_wall(setup, result.steps):  # that force is no result
+        del found["force_N"]
     left = 0.0 if release is None else set_of(release, radius)
     if left > 0.0 or (left and radius):
         found["set_mm"] = max(required * abs(left), NOTICED * setup.spring.free_length)

@@ -63,6 +63,7 @@ ENTRIES = {
     "initial_tension_N": ("initial tension", "estimated_initial_tension_error_N"),
     "initial_tension_after_N": ("initial tension after release", "estimated_initial_tension_after_error_N"),
     "force_max_N": ("maximum force", "estimated_force_error_N"),
+    "closing_force_N": ("force where the coils close", "estimated_closing_force_error_N"),
     "force_max_height_mm": ("height under the maximum force", "estimated_force_max_height_error_mm"),
     "rate_N_per_mm": ("initial rate", "estimated_rate_error_N_per_mm"),
     "open_rate_N_per_mm": ("rate, coils open", ""),
@@ -93,6 +94,7 @@ ALONG = (
     "initial_tension_N",
     "initial_tension_after_N",
     "force_max_N",
+    "closing_force_N",
     "force_max_height_mm",
     "rate_N_per_mm",
     "open_rate_N_per_mm",
@@ -164,13 +166,21 @@ def _is_given(s: Summary, name: str) -> bool:
 
 
 def _is_said_otherwise(s: Summary, name: str) -> bool:
-    """Whether another number says the same: a height that was given, the rate before the spring is finished."""
+    """Whether another number says the same or more: a height that was given, the rate before the spring is finished, a
+    force behind the closing of the coils."""
+    if name == "force_max_N":
+        return greatest_force(s) != name
     if name == "force_max_height_mm":
         return not s.get("force_max_is_given")
     return name == "rate_30_70_N_per_mm" and s.get("rate_30_70_after_N_per_mm") is not None
 
 
 # ---- how numbers relate to others ----------------------------------------------------------------------------------
+
+
+def greatest_force(s: Summary) -> str:
+    """The entry of the greatest force that means something: that where the coils close, if the run went beyond."""
+    return "force_max_N" if s.get("closing_force_N") is None else "closing_force_N"
 
 
 def _nothing(s: Summary) -> str:
@@ -230,11 +240,16 @@ def _outside(name: str) -> Callable[[Summary], str]:
     return remark
 
 
+def _of_closing(s: Summary) -> str:
+    return f"at {plain(s['closing_height_mm'], DIGITS)} mm; the curve is vertical from there to block"
+
+
 REMARKS: dict[str, Callable[[Summary], str]] = {
     "set_mm": _of_set,
     "free_length_after_mm": _of_length,
     "initial_tension_N": _of_tension,
     "force_max_N": _of_load,
+    "closing_force_N": _of_closing,
     "rate_N_per_mm": lambda s: "" if s.get("open_rate_N_per_mm") is None else "coils closed",
     "residual_shear_inside_MPa": _of_residual,
     "tail_stress_max_MPa": _of_tail,

@@ -7,7 +7,7 @@ from typing import Any
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.core.case import Case
 from coilset.model.core.results.loading import Loading, loading_of
-from coilset.model.core.results.quantities import quantity
+from coilset.model.core.results.quantities import greatest_force, quantity
 from coilset.model.core.results.records.labels import lives_text
 from coilset.model.core.results.records.record import Limit
 from coilset.model.core.results.records.units import words_and_unit
@@ -24,7 +24,7 @@ from coilset.model.tools.standards import en15800
 
 MOST_LEVELS = 6  # lengths on the drawing; the table has all
 DRAWN = {"free_length_after_mm": "free length L0", "rate_30_70_after_N_per_mm": "rate R"}
-FINISHED = ("set_mm", "residual_shear_inside_MPa", "force_max_N")
+FINISHED = ("set_mm", "residual_shear_inside_MPa")
 TURNED = ("turn_set_deg", "residual_bending_inside_MPa", "torque_max_Nmm")
 TAILS = ("hooks", "arms")
 ALL = ("all", "all others")  # rows of what a table has not
@@ -162,7 +162,7 @@ def _limit_lines(limits: Any, summary: Mapping[str, Any], words: Words) -> Itera
 def _finished(summary: Mapping[str, Any], words: Words) -> Iterator[Line]:
     """What only a run has: the set, residual stress, and the true stress at the working lengths with its safety."""
     number = words.number
-    for name in TURNED if loading_of(summary) is Loading.TURNED else FINISHED:
+    for name in TURNED if loading_of(summary) is Loading.TURNED else (*FINISHED, greatest_force(summary)):
         one = quantity(summary, name)
         if one.value is not None:
             yield Line(words(one.words), "", words.comma(one.number), one.unit)

@@ -125,6 +125,7 @@ GERMAN = {
     "set": "Setzbetrag",
     "residual shear stress, inside of the coil": "Schubeigenspannung, innen",
     "maximum force": "größte Kraft des Laufs",
+    "force where the coils close": "Kraft beim Anliegen der Windungen",
     "maximum torque": "größtes Moment des Laufs",
     "residual bending stress, inside of the coil": "Biegeeigenspannung, innen",
     "greatest shear stress at {} mm": "größte Schubspannung bei {} mm",

@@ -217,7 +217,10 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
     why = "" if sheet.block is not None else f"no formula was found for {s.ends} ends{' of hot coiled springs' * hot}"
     yield Row("block length Lc", sheet.block, "mm", formula if sheet.block else "", ONE if hot else TWO, why=why)
     yield Row("block of the geometry", solid, "mm", "where the coils touch; Lc is an upper bound", DERIVED)
-    force = sheet.at_run("force_max_N") if sheet.was_at_block else None
+    force = None
+    if sheet.was_at_block:
+        closing = sheet.at_run("closing_force_N")
+        force = sheet.at_run("force_max_N") if closing is None else closing
     yield Row(
         "force at block Fc",
         sheet.force(solid),

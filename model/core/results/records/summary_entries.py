@@ -59,6 +59,13 @@ class Summary:
         "first compression there",
     )
     force_max_N: float = entry("N", "the force of largest magnitude in any step", in_slice=True)
+    closing_force_N: float | None = entry(
+        "N",
+        "force where the coils close: at the last step before the characteristic of the last compression to block is "
+        "vertical, a change of 20 % and more in force by 1 % of travel; `null` where it is not",
+    )
+    closing_height_mm: float | None = entry("mm", "height between the seats there")
+    estimated_closing_force_error_N: float | None = entry("N", "estimated size of the error of that force")
     force_max_is_given: bool = entry("", "whether the load program gives that force, so that its height was computed")
     force_max_height_mm: float | None = entry("mm", "height between the seats under it; `null` before the first step")
     estimated_force_max_height_error_mm: float | None = entry(

@@ -46,7 +46,9 @@ def characteristic(run: Run) -> Panel:
         traces.append(curve(x, rate * x, GREY, dash="dot", width=1.2, name=name))
     traces += _working(summary)
     block = summary["free_length_before_mm"] - summary["block_height_mm"]
-    finding = f"{compressed(greatest)} with up to {plain(abs(greatest))} N{_outcome(summary)}"
+    closing = summary.get("closing_force_N")
+    force = f"up to {plain(abs(greatest))} N" if closing is None else f"{plain(closing)} N where the coils close"
+    finding = f"{compressed(greatest)} with {force}{_outcome(summary)}"
     layout = upright(block, f"block, {summary['block_height_mm']:.4g} mm high")
     if greatest < 0.0:
         layout = {"annotations": []}
