@@ -344,20 +344,19 @@ def check_lines(console: Console, made: Sequence[Check]) -> None:
         return
     failed = any(one.verdict is Verdict.NOT_PERMITTED for one in made)
     console.print(styled("bold red" if failed else "bold", sentence(made)), soft_wrap=True)
-    rows = [one.cells for one in made]
-    widths = [max(len(row[k]) for row in (HEADS, *rows)) for k in range(len(HEADS))]
-    for number, cells in enumerate((HEADS, *rows)):
-        name, *numbers, verdict = (f"{cell:{'<' if k in (0, 4) else '>'}{widths[k]}}" for k, cell in enumerate(cells))
-        line, style = f"  {name}  {'  '.join(numbers)}  ", "dim"
-        if not number:
-            console.print(styled("dim", f"{line}{verdict}".rstrip()), soft_wrap=True)
+    rows = [HEADS, *(one.cells for one in made)]
+    widths = [max(len(row[k]) for row in rows) for k in range(len(HEADS))]
+    styles = {Verdict.NOT_PERMITTED: "bold red", Verdict.NOT_KNOWN: "yellow"}
+    for one, row in zip((None, *made), rows, strict=True):
+        name, verdict, *numbers = (f"{cell:{'<' if k < 2 else '>'}{widths[k]}}" for k, cell in enumerate(row))
+        line, rest = f"  {name}  ", f"  {'  '.join(numbers)}"
+        if one is None:
+            console.print(styled("dim", f"{line}{verdict}{rest}"), soft_wrap=True)
             continue
-        one = made[number - 1]
-        fits = len(line) + len(verdict) + 2 + len(one.why) <= console.width
-        why = f"  {one.why}" if fits else f"\n      {one.why}"
-        shown = verdict if fits else verdict.rstrip()
-        style = {Verdict.NOT_PERMITTED: "bold red", Verdict.NOT_KNOWN: "yellow"}.get(one.verdict, "")
-        console.print(Text.assemble(line, (shown, style), (why.rstrip(), "dim")), soft_wrap=True)
+        fits = len(line) + len(verdict) + len(rest) + 2 + len(one.why) <= console.width
+        why = f"{'  ' if fits else chr(10) + 6 * ' '}{one.why}".rstrip()
+        text = Text.assemble(line, (verdict, styles.get(one.verdict, "")), rest, (why, "dim"))
+        console.print(text, soft_wrap=True)
 
 
 def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:

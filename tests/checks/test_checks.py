@@ -173,7 +173,7 @@ def test_a_warm_spring_is_not_judged_by_the_strength_of_a_cold_one():
     loaded = found["τ at 38 mm"]
     assert loaded.verdict is Verdict.NOT_KNOWN
     assert "150 °C" in loaded.because
-    assert found["temperature"].cells[1:] == ("150", "≤ 246", "96", "permitted")
+    assert found["temperature"].cells[1:] == ("permitted", "150", "≤ 246", "96")
     assert made(VALVE, temperature=523.15 - 50.0)["temperature"].verdict is Verdict.PERMITTED
     cold = made(VALVE, temperature=293.15)["τ at 38 mm"]
     assert cold.verdict is Verdict.PERMITTED
@@ -252,8 +252,8 @@ def test_a_limit_beyond_is_never_permitted_and_a_missing_one_never_known():
     assert Check("a", 1.1, high=1.0, because="of heat").verdict is Verdict.NOT_PERMITTED
     assert Check("a", 0.9, high=1.0, because="of heat").verdict is Verdict.NOT_KNOWN
     assert Check("a", 0.9, because="nobody says").verdict is Verdict.NOT_KNOWN
-    assert Check("a", 5.0, 4.0, 20.0).cells == ("a", "5", "4 to 20", "1", "permitted")
-    assert Check("a", 5.0, high=inf, unit="mm").cells == ("a, mm", "5", "≤ ∞", "∞", "permitted")
+    assert Check("a", 5.0, 4.0, 20.0).cells == ("a", "permitted", "5", "4 to 20", "1")
+    assert Check("a", 5.0, high=inf, unit="mm").cells == ("a, mm", "permitted", "5", "≤ ∞", "∞")
 
 
 def test_all_checks_in_a_sentence():

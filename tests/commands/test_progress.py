@@ -112,7 +112,7 @@ def test_quiet_prints_the_answer_alone(said):
     """Checks and numbers, and nothing before or behind them."""
     lines, _ = said(voice="quiet")
     assert lines[0].startswith(("Permitted by all", "Not "))
-    assert lines[1].split() == ["check", "value", "limit", "reserve", "verdict"]
+    assert lines[1].split() == ["check", "verdict", "value", "limit", "reserve"]
     assert any(line.startswith("  set ") for line in lines)
     assert not any("warning:" in line or "results in" in line or ROW.match(line) for line in lines)
 

@@ -79,18 +79,18 @@ class Check:
 
     @property
     def cells(self) -> tuple[str, str, str, str, str]:
-        """Name with its unit, value, limit, reserve and verdict, as every table of checks has them."""
+        """Name with its unit, verdict, value, limit and reserve, as every table of checks has them."""
         name = f"{self.name}, {self.unit}" if self.unit else self.name
-        return name, _text(self.value), self.limit or "–", _text(self.reserve), self.verdict.value
+        return name, self.verdict.value, _text(self.value), self.limit or "–", _text(self.reserve)
 
     @property
     def message(self) -> str:
         """The check in one sentence."""
-        name, value, limit, _, verdict = self.cells
+        name, verdict, value, limit, _ = self.cells
         return f"{name} {value}, limit {limit}: {verdict} ({self.why})"
 
 
-HEADS = ("check", "value", "limit", "reserve", "verdict")
+HEADS = ("check", "verdict", "value", "limit", "reserve")
 """Columns of a table of checks, see `Check.cells`."""
 
 

@@ -16,9 +16,10 @@ from coilset.model.core.case import check
 from coilset.model.core.results.files.opened import Run
 from coilset.model.core.results.quantities import quantity
 from coilset.model.core.results.records.labels import plain
+from coilset.model.tools.checks.check import Check, sentence
+from coilset.model.tools.checks.table import checks
 from coilset.model.tools.report.answer import answer
-from coilset.model.tools.report.verdict import Check, checks, verdict
-from coilset.model.tools.standards.cylinder import Cylinder
+from coilset.model.tools.sheet import from_results
 
 DPI = 110  # of the drawing
 
@@ -30,7 +31,8 @@ class FirstSheet:
     Attributes:
         rows: name and value of each number.
         drawing: PNG as base64; empty if the spring cannot be built any more.
-        checks, verdict: see `verdict`.
+        checks: of the spring; none if it cannot be built any more, or a file of its material has gone.
+        verdict: what they say together.
     """
 
     rows: list[tuple[str, str]]
@@ -41,22 +43,16 @@ class FirstSheet:
 
 def first_sheet(run: Run) -> FirstSheet:
     """The sheet of a run."""
+    made: list[Check] = []
     try:
         case = check(run.case)
         spring = case.spring.build()
+        made = checks(case, spring, from_results.read(run.folder))
     except InputError:  # a file of the case that has gone
         spring = None
-    made = checks(run.summary, spring is not None and _is_cylinder(spring), isinstance(run.case["material"], dict))
     rows = [] if spring is None else _geometry(spring)
-    return FirstSheet(rows + results(run.summary), "" if spring is None else _drawn(spring), made, verdict(made))
-
-
-def _is_cylinder(spring: Spring) -> bool:
-    try:
-        Cylinder.of(spring)
-    except InputError:
-        return False
-    return True
+    drawn = "" if spring is None else _drawn(spring)
+    return FirstSheet(rows + results(run.summary), drawn, made, sentence(made))
 
 
 def _geometry(spring: Spring) -> list[tuple[str, str]]:

@@ -14,6 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.results.files.folder import whole
+from coilset.model.tools.checks.check import HEADS
 from coilset.model.tools.figures.panels.panel import Panel
 
 NAME = "report.html"
@@ -65,6 +66,7 @@ def write_page(folder: Path, kind: str, chapters: Chapters, data: dict[str, Any]
         lstrip_blocks=True,
     )
     environment.globals["glossary"] = GLOSSARY
+    environment.globals["check_heads"] = HEADS
     environment.filters["compressed"] = compressed
     text = environment.get_template(f"{kind}.html").render(
         name=folder.resolve().name,

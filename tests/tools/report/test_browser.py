@@ -209,7 +209,7 @@ def test_the_first_printed_sheet_has_the_makers_data(browser, run_page):
         browser.run("window.dispatchEvent(new Event('beforeprint'))")
         until(browser, "return document.querySelector('.first #characteristic svg') !== null")
         text = browser.run("return document.querySelector('.first').innerText")
-        for part in ("wire diameter d", "free length as wound", "Not checked: permissible stress"):
+        for part in ("wire diameter d", "free length as wound", "Not known: τ at solid"):
             assert part in text
         assert 600 < browser.run("return document.querySelector('.first').getBoundingClientRect().bottom") < 1032
     finally:
