@@ -9,12 +9,13 @@ from mpi4py import MPI
 from coilset.meshes.springs.spring import Spring
 from coilset.model.core.base.errors import CoilsetError, InputError, naming
 from coilset.model.core.case import UnloadedCase, read_case
-from coilset.model.core.case.loading import is_pressed, is_turned
+from coilset.model.core.case.loading import is_turned
 from coilset.model.core.case.material import case_elastic, case_law
 from coilset.model.core.results.files.folder import DRAWN, make, refuse_to_replace, whole
+from coilset.model.tools.checks.check import Verdict
+from coilset.model.tools.checks.table import checks
 from coilset.model.tools.limits.spring_warnings import spring_warnings
 from coilset.model.tools.sheet.spring_data import spring_data
-from coilset.model.tools.standards.buckling import seating_of
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
 
@@ -49,12 +50,15 @@ def mesh(
         turned = is_turned(case, spring)
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         elastic = case_elastic(case, case_law(case, spring))
-        spring = spring if height is None else spring.at_height(height)
+        drawn, spring = spring, spring if height is None else spring.at_height(height)
     refuse_to_replace([folder / name for name in DRAWN if pictures] + [Path(path) for path in write], force)
     rows = ((label, f"{value} {unit}".strip()) for label, value, unit in spring_data(spring, elastic, turned))
     console.pairs([*rows, ("elements", str(len(turns) - 1))])
-    for warning in spring_warnings(spring, elastic, is_pressed(case, spring), seating_of(case)):
+    for warning in spring_warnings(spring):
         console.warn(warning.message)
+    for one in checks(case, drawn):
+        if one.verdict is Verdict.NOT_PERMITTED:
+            console.warn(one.message, "not permitted")
     for path in write:
         make(Path(path).parent)
         try:

@@ -14,13 +14,14 @@ from coilset.meshes.springs.spring import Spring
 from coilset.model.core.base.errors import InputError, naming
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.case import Case, UnloadedCase, read_case
-from coilset.model.core.case.loading import is_pressed
 from coilset.model.core.case.material import case_law
 from coilset.model.core.results.files.folder import make, refuse_to_replace
+from coilset.model.tools.checks.check import Check
+from coilset.model.tools.checks.table import checks
 from coilset.model.tools.document.words import Language, Words
 from coilset.model.tools.figures.panels.goodman import goodman as diagram_of
 from coilset.model.tools.figures.png import write_png
-from coilset.model.tools.limits.case_warnings import sheet_warnings, warm_warnings
+from coilset.model.tools.limits.case_warnings import warm_warnings
 from coilset.model.tools.limits.spring_warnings import spring_warnings
 from coilset.model.tools.limits.working_warnings import presetting_warning
 from coilset.model.tools.sheet import from_results
@@ -28,12 +29,12 @@ from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import Row, sections
 from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards import goodman
-from coilset.model.tools.standards.buckling import seating_of
 from coilset.model.tools.standards.en15800 import GRADES
 from coilset.model.tools.wires import names, wire
 from coilset.model.tools.wires.library import files, own_folder
 from coilset.model.tools.wires.wire_file import Surface
 from coilset.model.tools.wires.words import WIRE_COLUMNS, described, table_row
+from coilset.scripts.terminal.checks import check_lines
 from coilset.scripts.terminal.console import Console, styled
 from coilset.scripts.terminal.target import SHEETS, results_folder
 
@@ -88,13 +89,14 @@ def sheet(case_file: str | Path | None, options: Options) -> None:
     diagram = _diagram(made) if options.pictures and (folders or not files) else None
     refuse_to_replace([*files, *([folder / FIGURE] if diagram is not None else [])], options.force)
     console = Console()
-    warnings = _print(console, case, spring, made, options.results)
+    table = checks(case, spring, run, made)
+    warnings = _print(console, case, spring, made, table, options.results)
     if files:
         from coilset.model.tools.document.content import document
         from coilset.model.tools.document.output import write
 
         name = Path(options.results).resolve().name if options.results else ""
-        content = document(case, spring, made, name, warnings, Words(options.language))
+        content = document(case, spring, made, table, name, warnings, Words(options.language))
         if body is not None:
             content = replace(content, body=body)
         for file in files:
@@ -106,14 +108,17 @@ def sheet(case_file: str | Path | None, options: Options) -> None:
         console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 
 
-def _print(console: Console, case: Case, spring: Spring, made: Sheet, results: str | Path | None) -> list[str]:
-    """The rows, and warnings; returns these."""
+def _print(
+    console: Console, case: Case, spring: Spring, made: Sheet, table: Sequence[Check], results: str | Path | None
+) -> list[str]:
+    """The checks, the rows, and warnings; returns these."""
     run, parts = made.found, sections(made)
     width = max(len(row.label) for _, rows in parts for row in rows)
     before = []
     if run and (other := _other_program(run, case)):  # before the rows, which it makes hard to compare
         before = [f"the run {results} is of another load program: {_listed(other)}"]
         console.warn(before[0])
+    check_lines(console, table)
     beside = f"{'run':>9}  " if run else ""
     head = f"  {'':{width}} {'formula':>9} {'':5} {beside}"
     console.print(styled("dim", "how it is computed; check", before=head), soft_wrap=True)
@@ -214,8 +219,7 @@ def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
 def _warnings(case: Case, spring: Spring, made: Sheet) -> list[Warning]:
     cylinder = made.spring
     warm = warm_warnings(case, case_law(case, spring), made.wire.name if made.wire else None)
-    own = spring_warnings(spring, made.elastic, is_pressed(case, spring), seating_of(case))
-    warnings = [*warm, *own, *sheet_warnings(made, [cylinder.solid])]
+    warnings = [*warm, *spring_warnings(spring)]
     set_mm = made.at_run("set_mm")
     if set_mm and made.was_at_block and not (made.pulled or made.turned):  # any other run is no presetting
         warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])

@@ -20,8 +20,9 @@ from coilset.model.core.contact.base import SEAT_DOFS
 from coilset.model.core.results.quantities import quantities
 from coilset.model.core.results.records.labels import lives_text, within
 from coilset.model.core.results.records.record import ContactRecord, SeatReactions, Step
-from coilset.model.tools.checks.check import HEADS, Check, Verdict, sentence
+from coilset.model.tools.checks.check import Check
 from coilset.model.tools.checks.warnings import told
+from coilset.scripts.terminal.checks import check_lines
 from coilset.scripts.terminal.console import Console, styled, table
 
 if TYPE_CHECKING:  # not where a rod is solved
@@ -336,27 +337,6 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
             "-" if state["safety"] is None else f"{state['safety']:.2f}",
         )
     return made
-
-
-def check_lines(console: Console, made: Sequence[Check]) -> None:
-    """The table of checks, what they say together first; where limits are from follows on a line of its own."""
-    if not made:
-        return
-    failed = any(one.verdict is Verdict.NOT_PERMITTED for one in made)
-    console.print(styled("bold red" if failed else "bold", sentence(made)), soft_wrap=True)
-    rows = [HEADS, *(one.cells for one in made)]
-    widths = [max(len(row[k]) for row in rows) for k in range(len(HEADS))]
-    styles = {Verdict.NOT_PERMITTED: "bold red", Verdict.NOT_KNOWN: "yellow"}
-    for one, row in zip((None, *made), rows, strict=True):
-        name, verdict, *numbers = (f"{cell:{'<' if k < 2 else '>'}{widths[k]}}" for k, cell in enumerate(row))
-        line, rest = f"  {name}  ", f"  {'  '.join(numbers)}"
-        if one is None:
-            console.print(styled("dim", f"{line}{verdict}{rest}"), soft_wrap=True)
-            continue
-        fits = len(line) + len(verdict) + len(rest) + 2 + len(one.why) <= console.width
-        why = f"{'  ' if fits else chr(10) + 6 * ' '}{one.why}".rstrip()
-        text = Text.assemble(line, (verdict, styles.get(one.verdict, "")), rest, (why, "dim"))
-        console.print(text, soft_wrap=True)
 
 
 def fatigue_table(entries: Sequence[Mapping[str, Any]]) -> Table:

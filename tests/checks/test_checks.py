@@ -240,6 +240,38 @@ def test_buckling_is_that_of_the_true_ends(tilting, seating):
     assert not isfinite(made(PLAIN)["travel before buckling"].high)
 
 
+@pytest.mark.parametrize(("diameter", "verdict"), [(8.0, "permitted"), (7.0, "not permitted"), (44.0, "not permitted")])
+def test_the_index_of_cold_coiled_springs(diameter, verdict):
+    """4 to 20 of EN 13906-1: 4, 3.5 and 22."""
+    one = made(PLAIN, spring__mean_diameter=diameter)["index D/d"]
+    assert (one.value, one.verdict.value) == (pytest.approx(diameter / 2.0), verdict)
+
+
+@pytest.mark.parametrize(("height", "verdict"), [(65.0, Verdict.PERMITTED), (64.5, Verdict.NOT_PERMITTED)])
+def test_the_stress_of_a_named_wire(height, verdict):
+    """R = 81500 · 5⁴/(8 · 40³ · 2.5) = 39.79 N/mm, τ = 8 D R s/(π d³) = 32.43 s; 0.56 Rm = 927.8 N/mm² at 28.6 mm."""
+    spring = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 35.4}
+    one = made(PLAIN, spring=spring, ends="clamped", working={"lengths": [height]})[f"τ at {height:g} mm"]
+    assert one.value == pytest.approx(32.43 * (93.5 - height), rel=1e-3)
+    assert (one.high, one.verdict) == (pytest.approx(927.8, abs=0.1), verdict)
+
+
+def test_american_wire_has_a_limit_of_the_corrected_stress():
+    """Shigley's table 10-6: 45 % of Rm of music wire, between 1944 and 1979 MPa of its table at 2 mm."""
+    one = made(PLAIN, material={"wire": "ASTM A228"})["τk at 25 mm"]
+    rate = 80000.0 * 2.0**4 / (8.0 * 16.0**3 * 6.0)
+    # moduli go by the diameter: 81 GPa up to 3.175 mm
+    rate *= 81000.0 / 80000.0
+    assert one.value == pytest.approx(8.5 / 7.25 * 8.0 * 16.0 * rate * 21.0 / (pi * 8.0), rel=1e-3)
+    assert 0.45 * 1944.0 < one.high < 0.45 * 1979.0
+
+
+def test_a_run_is_believed_before_a_formula():
+    run = {"force_max_N": 300.0, "working": working((34.0, 60.0), (25.0, 120.0))}
+    assert made(PLAIN, run)["τ at 25 mm"].value == pytest.approx(8.0 * 16.0 * 120.0 / (pi * 8.0))
+    assert "as wound" in made(PLAIN)["τ at 25 mm"].remark
+
+
 def test_hot_coiled_bar_has_limits_of_its_own():
     """28 mm of EN 10089, between 813.1 and 794.6 MPa of 25 and 30 mm."""
     assert hot_block_stress(28.0).stress == pytest.approx(813.1 - 0.6 * 18.5)

@@ -71,11 +71,15 @@ class Check:
         return "" if self.high is None else f"≤ {_text(self.high)}"
 
     @property
+    def basis(self) -> str:
+        """Source of the limits, and how sure it is."""
+        return ", ".join(filter(None, (self.source, self.sure)))
+
+    @property
     def why(self) -> str:
-        """Source of the limits and how sure it is, why the verdict is not known, and the remark, in one line."""
+        """That, why the verdict is not known, and the remark, in one line."""
         known = self.verdict is not Verdict.NOT_KNOWN
-        basis = ", ".join(filter(None, (self.source, self.sure)))
-        return "; ".join(filter(None, (basis, "" if known else f"because {self.because}", self.remark)))
+        return "; ".join(filter(None, (self.basis, "" if known else f"because {self.because}", self.remark)))
 
     @property
     def cells(self) -> tuple[str, str, str, str, str]:
@@ -85,9 +89,9 @@ class Check:
 
     @property
     def message(self) -> str:
-        """The check in one sentence."""
-        name, verdict, value, limit, _ = self.cells
-        return f"{name} {value}, limit {limit}: {verdict} ({self.why})"
+        """The check in one sentence, without the verdict."""
+        name, _, value, limit, _ = self.cells
+        return f"{name}: {value}, limit {limit} ({self.why})"
 
 
 HEADS = ("check", "verdict", "value", "limit", "reserve")

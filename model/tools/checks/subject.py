@@ -15,9 +15,9 @@ from coilset.model.core.case.material import case_elastic, case_law, case_streng
 from coilset.model.core.case.phases import TimePhase
 from coilset.model.core.material.law.steel import Elastic
 from coilset.model.core.results.loading import Loading, loading_of
+from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards import en13906
 from coilset.model.tools.standards.rate import WireNumbers
-from coilset.model.tools.standards.sheet import Sheet
 from coilset.model.tools.wires import wire
 from coilset.model.tools.wires.wire import ROOM_TEMPERATURE, Wire
 

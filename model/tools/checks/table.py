@@ -12,9 +12,9 @@ from coilset.model.tools.checks.compressed import compressed
 from coilset.model.tools.checks.pulled import pulled
 from coilset.model.tools.checks.subject import Subject, subject
 from coilset.model.tools.checks.turned import turned
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.from_results import Found
-from coilset.model.tools.standards.case_sheet import case_sheet
-from coilset.model.tools.standards.sheet import Sheet
+from coilset.model.tools.sheet.sheet import Sheet
 
 BY_LOADING: dict[Loading, Callable[[Subject], Iterator[Check]]] = {
     Loading.COMPRESSED: compressed,

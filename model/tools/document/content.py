@@ -12,6 +12,7 @@ from coilset.model.core.results.records.labels import lives_text
 from coilset.model.core.results.records.record import Limit
 from coilset.model.core.results.records.units import words_and_unit
 from coilset.model.physics.working.working import number_name
+from coilset.model.tools.checks.check import Check, Verdict, sentence
 from coilset.model.tools.document.diagrams import diagrams
 from coilset.model.tools.document.entries import SheetSpec
 from coilset.model.tools.document.view import Drawing, Level, view
@@ -48,6 +49,7 @@ class Document:
         title: of the kind of spring.
         head: names and values of its head.
         basis: where the numbers are from.
+        checks: what is permitted, cells of each check and where its limit is from; verdict: what they say together.
         drawing: side view with dimensions.
         body: the spring, as it is drawn.
         tables: headings with their lines.
@@ -60,6 +62,8 @@ class Document:
     title: str
     head: list[tuple[str, str]]
     basis: str
+    checks: list[tuple[tuple[str, ...], str]]
+    verdict: str
     drawing: Drawing
     body: Spring
     tables: list[tuple[str, list[Line]]]
@@ -69,12 +73,21 @@ class Document:
     words: Words
 
 
-def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequence[str], words: Words) -> Document:
+def document(
+    case: Case,
+    spring: Spring,
+    sheet: Sheet,
+    checks: Sequence[Check],
+    run: str,
+    remarks: Sequence[str],
+    words: Words,
+) -> Document:
     """The document of a sheet.
 
     Args:
         case, spring: of the sheet.
         sheet: its numbers, with those of a run if there is one.
+        checks: what is permitted of the spring.
         run: name of the run; empty without one.
         remarks: warnings.
         words: of the language.
@@ -105,14 +118,29 @@ def document(case: Case, spring: Spring, sheet: Sheet, run: str, remarks: Sequen
         words(kind),
         head,
         words(basis),
+        [_checked(one, words) for one in checks],
+        words(sentence(checks)),
         _view(sheet, shown, limits, words),
         shown,
         [(title, lines) for title, lines in tables if lines],
         bool(run),
         [_translated(panel, words) for panel in diagrams(sheet, limits)],
-        [*missing, *remarks],
+        [*_not_known(checks), *missing, *remarks],
         words,
     )
+
+
+def _checked(one: Check, words: Words) -> tuple[tuple[str, ...], str]:
+    """Cells of a check, and where its limit is from."""
+    name, verdict, *numbers = one.cells
+    return (words(name), words(verdict), *(words.comma(number) for number in numbers)), one.basis
+
+
+def _not_known(checks: Sequence[Check]) -> Iterator[str]:
+    """Why checks say nothing, and what would make them."""
+    for one in checks:
+        if one.verdict is Verdict.NOT_KNOWN:
+            yield f"{one.name} is not known, because {one.because}"
 
 
 def _empty(row: Row) -> bool:

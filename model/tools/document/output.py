@@ -68,6 +68,10 @@ def _csv(made: Document) -> bytes:
     rows = csv.writer(file, delimiter=";" if made.words.language == "de" else ",", lineterminator="\n")
     rows.writerow(as_text(["", made.title, made.basis, "", ""]))
     rows.writerows(as_text(["", name, value, "", ""]) for name, value in made.head)
+    rows.writerow(as_text(["", made.verdict, "", "", ""]))
+    for (name, verdict, value, limit, _), _ in made.checks:
+        numbers = (text.replace("−", "-") for text in (value, limit))
+        rows.writerow(as_text([made.words("check"), name, *numbers, verdict]))
     rows.writerow(["", "", made.words("formula"), made.words("run"), ""])
     for title, lines in made.tables:
         for line in lines:

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coilset.model.core.base.style import STYLE
+from coilset.model.tools.checks.check import HEADS
 from coilset.model.tools.document.content import Document, Line
 from coilset.model.tools.document.view import LETTERS, Drawing
 from coilset.model.tools.figures.png import draw
@@ -19,6 +20,10 @@ HEAD = 44.0  # mm of the head of the first page
 SMALL, PITCH = 6.6, 3.75  # points of the tables, mm of a line
 REMARK = 2.9  # mm of a line of the remarks
 BESIDE = 75.0  # mm of a diagram beside the table
+CHECK = 3.3  # mm of a line of the checks
+CELLS = ((0.0, "left"), (48.0, "left"), (84.0, "right"), (106.0, "right"), (122.0, "right"))
+"""Where the cells of a check are, mm from the margin, and which side of the text that is."""
+BASIS, LETTERS_OF_BASIS = 125.0, 66
 COLUMN = 0.5 * (WIDTH - 2 * MARGIN - 6.0)
 WEIGHTS = {"OUTLINE": 0.9, "AXIS": 0.5, "DIMENSION": 0.4}
 STYLES = {"OUTLINE": "-", "AXIS": (0, (10, 3, 2, 3)), "DIMENSION": "-"}
@@ -31,8 +36,9 @@ def pages(made: Document) -> list[Figure]:
     with mpl.rc_context(STYLE):
         first, axes = _page(made)
         _head(axes, made)
-        bottom = _drawing(axes, made.drawing, HEIGHT - MARGIN - HEAD) - 6.0
-        _numbers(axes, made)
+        top = _checks(axes, made, HEIGHT - MARGIN - HEAD)
+        bottom = _drawing(axes, made.drawing, top) - 6.0
+        _numbers(axes, made, top)
         items, remarks = list(_items(made)), _remark_lines(made)
         room = bottom - MARGIN - REMARK * (len(remarks) + 1 if remarks else 0)
         if max(_height(items), len(made.panels) * BESIDE) < room:
@@ -85,9 +91,25 @@ def _head(axes: Axes, made: Document) -> None:
         axes.text(left + 1.5, y - 7.4, textwrap.shorten(value, letters, placeholder="…"), fontsize=8.5, va="center")
 
 
-def _numbers(axes: Axes, made: Document) -> None:
+def _checks(axes: Axes, made: Document, top: float) -> float:
+    """The table of checks below a level, over the whole width; returns the level that it ends at."""
+    if not made.checks:
+        return top
+    y = top - PITCH
+    axes.text(MARGIN, y, made.verdict, fontsize=SMALL + 0.6, weight="bold")
+    heads = tuple(made.words(head) for head in HEADS)
+    for cells, basis in [(heads, made.words("limit from")), *made.checks]:
+        y -= CHECK
+        for cell, (x, side) in zip(cells, CELLS, strict=True):
+            axes.text(MARGIN + x, y, cell, fontsize=SMALL - 0.4, ha=side)
+        axes.text(MARGIN + BASIS, y, textwrap.shorten(basis, LETTERS_OF_BASIS, placeholder="…"), fontsize=5.4)
+        axes.plot([MARGIN, WIDTH - MARGIN], [y - 0.8] * 2, color="0.85", lw=0.3)
+    return y - 3.0
+
+
+def _numbers(axes: Axes, made: Document, top: float) -> None:
     text = made.words(f"scale {made.drawing.scale}")
-    axes.text(WIDTH - MARGIN, HEIGHT - MARGIN - HEAD - 1.0, f"mm, N · {text}", fontsize=7, ha="right", va="top")
+    axes.text(WIDTH - MARGIN, top - 1.0, f"mm, N · {text}", fontsize=7, ha="right", va="top")
 
 
 def _drawing(axes: Axes, drawing: Drawing, top: float) -> float:

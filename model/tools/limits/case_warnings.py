@@ -1,31 +1,15 @@
-"""Everything a spring maker would warn about in a case before it runs: its entries, its spring, its working lengths."""
+"""What there is to think about in a case before it runs: its entries and its spring; the checks judge its loads."""
 
 from collections.abc import Iterator
 
 from coilset.meshes.springs.geometry import Spring
-from coilset.model.core.base.errors import InputError
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.case import Case
 from coilset.model.core.case.case import SectionSpec
-from coilset.model.core.case.loading import is_pressed
-from coilset.model.core.case.material import case_elastic
 from coilset.model.core.case.phases import TimePhase
 from coilset.model.core.case.warping import keeps_elastic_warping, warping_can_be_estimated
 from coilset.model.core.material.law.law import Law
-from coilset.model.core.material.law.steel import Elastic
 from coilset.model.tools.limits.spring_warnings import spring_warnings
-from coilset.model.tools.limits.working_warnings import (
-    endurance_warnings,
-    gap_warnings,
-    strength_warnings,
-    stress_warnings,
-)
-from coilset.model.tools.sheet.case_sheet import case_sheet
-from coilset.model.tools.sheet.sheet import Sheet, working_lengths
-from coilset.model.tools.standards import en13906
-from coilset.model.tools.standards.buckling import seating_of
-from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.wires import wire
 from coilset.model.tools.wires.wire import ROOM_TEMPERATURE
 
 COARSE = 0.1  # an accuracy that is rather meant in per cent
@@ -33,7 +17,6 @@ COARSE = 0.1  # an accuracy that is rather meant in per cent
 
 def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
     """Warnings about a case, before it runs."""
-    elastic = case_elastic(case, law)
     return (
         *_renamed(case),
         *_accuracy(case),
@@ -42,8 +25,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         *warm_warnings(case, law, None if isinstance(case.material, str) else case.material.wire),
         *_supports(case, spring),
         *_warping(case, spring, law),
-        *spring_warnings(spring, elastic, is_pressed(case, spring), seating_of(case)),
-        *_working(case, spring, elastic),
+        *spring_warnings(spring),
     )
 
 
@@ -144,32 +126,3 @@ def _warping(case: Case, spring: Spring, law: Law) -> Iterator[Warning]:
             f"polynomials of degree {case.section_degree} do not follow the warping of this wire, and no stated error "
             f"contains that: with 3 the rate of a rectangle 2:1 was 12 % too high; leave degree out or give {least}",
         )
-
-
-def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
-    """Warnings about the load program, for cylinders of constant wire diameter, to which the formulas apply."""
-    try:
-        if not is_pressed(case, spring):
-            return sheet_warnings(case_sheet(case, spring, None), [])
-        cylinder = Cylinder.of(spring)
-    except InputError:
-        return []
-    named = None if isinstance(case.material, str) else wire(case.material.wire)
-    rate = en13906.rate(elastic.shear_modulus, cylinder.of_rate, cylinder.D, cylinder.n)
-    lengths = working_lengths(case.targets, cylinder.length, rate, cylinder.solid)
-    to_block = [cylinder.solid] if any(phase.to == "block" for phase in case.targets) else []
-    return sheet_warnings(Sheet(cylinder, elastic, spring.wire_length, named, lengths), to_block)
-
-
-def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:
-    """Warnings about the working lengths of a sheet; `to_block` has the block length, mm, if the spring is compressed
-    to it, which is checked for stress only."""
-    if made.pulled or made.turned:  # gaps and the stress allowed at block are of compression springs
-        found = strength_warnings(made)
-    else:
-        found = gap_warnings(made)
-        if made.wire:
-            found += stress_warnings(made, [*made.lengths, *to_block], made.wire)
-    if made.cycle and made.endured:
-        found += endurance_warnings(made.cycle, made.endured)
-    return found

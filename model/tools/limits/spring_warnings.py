@@ -7,30 +7,16 @@ import numpy as np
 from coilset.meshes.springs.checks import TOUCH, coil_distances
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.core.base.warning import Warning
-from coilset.model.core.material.law.steel import STEEL, Elastic
-from coilset.model.tools.standards.buckling import SEATING, buckling_travel
 
-INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
 WIRE_USUAL = (0.07, 20.0)  # mm; EN 15800, table 1 and, from 16 mm on, annex A
 ACTIVE_LEAST = 2.0  # EN 13906-1: number of active coils
 TIP_LEAST = 0.25  # of the wire diameter
 OFFSET_USUAL, TILT_USUAL = 0.1, 0.5  # of the wire diameter, and degrees: beyond, a scan was not set up on its axis
 
 
-def spring_warnings(
-    spring: Spring, elastic: Elastic = STEEL, pressed: bool = True, seating: float = SEATING
-) -> list[Warning]:
-    """All warnings about the unloaded spring itself.
-
-    Args:
-        spring: the spring.
-        elastic: moduli of its material, on whose ratio the travel to buckling depends.
-        pressed: whether it is a compression spring: others do not buckle.
-        seating: seating coefficient ν of its ends.
-    """
-    checks = (_wire, _index, _solid_coils, _active, _ground, _axis)
-    found = [warning for check in checks for warning in check(spring)]
-    return [*found, *_buckling(spring, elastic, seating)] if pressed else found
+def spring_warnings(spring: Spring) -> list[Warning]:
+    """All warnings about the unloaded spring itself; its index and its buckling are among the checks."""
+    return [warning for check in (_wire, _solid_coils, _active, _ground, _axis) for warning in check(spring)]
 
 
 def _wire(spring: Spring) -> Iterator[Warning]:
@@ -47,22 +33,6 @@ def _wire(spring: Spring) -> Iterator[Warning]:
             float(wire[i]),
             limit,
             "mm",
-        )
-
-
-def _index(spring: Spring) -> Iterator[Warning]:
-    t = spring.breaks
-    index = 2 * spring.mean_radius(t) / (spring.wire_diameter(t) * max(1.0, spring.width))
-    low, high = INDEX_USUAL
-    i, limit = _farthest(index, INDEX_USUAL)
-    if limit is not None:
-        yield Warning(
-            "index",
-            "spring.mean_diameter",
-            f"D/d = {index[i]:.3g} at turn {t[i]:.3g} is outside the "
-            f"{low:g} to {high:g} usual in cold coiling (EN 15800)",
-            float(index[i]),
-            limit,
         )
 
 
@@ -142,20 +112,3 @@ def _axis(spring: Spring) -> Iterator[Warning]:
     if axis.tilt > TILT_USUAL:
         text = f"the measured axis is tilted by {axis.tilt:.3g}° from the file's z axis; {moved}"
         yield Warning("measured axis", "spring.file", text, axis.tilt, TILT_USUAL, "degrees")
-
-
-def _buckling(spring: Spring, elastic: Elastic, seating: float) -> Iterator[Warning]:
-    travel = spring.free_length - spring.block_height
-    limit = buckling_travel(spring, elastic.shear_modulus / elastic.young_modulus, seating)
-    ends = "on parallel seats" if seating == SEATING else f"between its ends (ν = {seating:g})"
-    if limit < travel:
-        slender = spring.free_length / float(2 * np.min(spring.mean_radius(spring.breaks)))
-        yield Warning(
-            "buckling",
-            "spring.free_length",
-            f"slender, L0/D = {slender:.3g}: without a guide it buckles {ends} at "
-            f"{limit:.3g} mm of travel, before block at {travel:.3g} mm (EN 13906-1)",
-            limit,
-            travel,
-            "mm",
-        )

@@ -149,17 +149,16 @@ def _pulled(sheet: Sheet) -> Iterator[Row]:
         if sheet.hook_stress:
             formula = "q 32 F a/(π d³) + 4 N/(π d²), the greatest"
             yield Row("  bending stress of hooks", sheet.hook_stress * force, "MPa", formula, DERIVED)
-    yield from _strength(sheet, "extension springs (EN 13906-2)")
+    yield from _strength(sheet)
 
 
-def _strength(sheet: Sheet, springs: str) -> Iterator[Row]:
-    """Rm, and that what the standard permits of it was found in no source for these springs."""
+def _strength(sheet: Sheet) -> Iterator[Row]:
+    """Rm, where it is known."""
     if sheet.wire:
         sure = SHORT[sheet.wire.entry.strength.sure]
         yield Row("minimum tensile strength Rm", sheet.least_strength, "MPa", sheet.wire.name, sure)
     elif sheet.strength is not None:
         yield Row("tensile strength Rm", sheet.strength, "MPa", "of the material file", GIVEN)
-    yield Row("permissible stress", None, why=f"no source was found for the permitted part of Rm of {springs}")
 
 
 def _turned(sheet: Sheet) -> Iterator[Row]:
@@ -197,7 +196,7 @@ def _turned(sheet: Sheet) -> Iterator[Row]:
         inner = en13906.turned_diameter(s.D, s.n, turn) - s.d
         found = run("inner_diameter_min_mm") if largest and turn > 0.0 else None
         yield Row("  inner diameter", inner, "mm", "D n/(n + α/360°) − d", DERIVED, found, "also off the axis")
-    yield from _strength(sheet, "torsion springs (EN 13906-3)")
+    yield from _strength(sheet)
 
 
 def _spring(sheet: Sheet) -> Iterator[Row]:
@@ -268,8 +267,6 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
     if wire is None:
         if sheet.strength is not None:
             yield Row("tensile strength Rm", sheet.strength, "MPa", "of the material file", GIVEN)
-        why = "the allowed share of Rm depends on the wire; give --wire"
-        yield Row("allowed at block", None, "MPa", why=why)
         return
     strength, share = wire.entry.strength, wire.entry.block_stress
     yield Row("minimum tensile strength Rm", wire.strength(s.d), "MPa", wire.name, SHORT[strength.sure])

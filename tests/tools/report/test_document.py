@@ -51,7 +51,7 @@ def made(language="en", run=None):
     case = check(CASE)
     spring = case.spring.build()
     name = "out" if run else ""
-    return document(case, spring, case_sheet(case, spring, run), name, ["a remark"], Words(language))
+    return document(case, spring, case_sheet(case, spring, run), [], name, ["a remark"], Words(language))
 
 
 def test_the_table_has_the_formulas_and_the_run_with_their_words(tmp_path):
@@ -88,7 +88,7 @@ def test_an_extension_spring_is_drawn_with_the_forces_of_its_table():
     """At the body's drawing, in the diagram and in the table: hooks give way from the first pull on, coils from F0."""
     case = read_case(EXAMPLES / "springs" / "extension.yaml")
     sheet = case_sheet(case, case.spring.build(), None)
-    found = document(case, case.spring.build(), sheet, "", (), Words("en"))
+    found = document(case, case.spring.build(), sheet, [], "", (), Words("en"))
     ((_, lines),) = [table for table in found.tables if "EN 13906-2" in table[0]]
     (stated,) = [float(line.value.replace(",", "")) for line in lines if line.label.startswith("force at")]
     exact = sheet.pull_rate * (sheet.lengths[0] - sheet.spring.length + sheet.tension / sheet.rate)
@@ -107,7 +107,7 @@ def test_an_extension_spring_is_drawn_with_the_forces_of_its_table():
 def test_a_torsion_spring_has_its_arms_on_one_page():
     case = read_case(EXAMPLES / "springs" / "torsion.yaml")
     sheet = case_sheet(case, case.spring.build(), None)
-    found = document(case, case.spring.build(), sheet, "", (), Words("de"))
+    found = document(case, case.spring.build(), sheet, [], "", (), Words("de"))
     rows = [(line.label.strip(), line.value) for _, lines in found.tables for line in lines]
     assert rows.count(("gerade Länge", "25")) == 2
     assert {"Schenkel oben", "mit eingespannten Schenkeln"} <= dict(rows).keys()
@@ -126,7 +126,7 @@ def test_wound_coils_of_a_run_open_at_what_remains_of_their_initial_tension(tmp_
     summary |= {"initial_tension_N": 25.0, "initial_tension_after_N": 10.0}
     (tmp_path / "summary.json").write_text(json.dumps(summary))
     (tmp_path / "history.csv").write_text("seat_height_mm,force_N,contacts\n127,-100,0\n107,-40,0\n96,0,9\n")
-    found = document(case, spring, case_sheet(case, spring, from_results.read(tmp_path)), "", (), Words("en"))
+    found = document(case, spring, case_sheet(case, spring, from_results.read(tmp_path)), [], "", (), Words("en"))
     _, run, points = found.panels[0].traces
     assert run["y"][:2] == pytest.approx([0.0, 10.0])
     assert run["x"][1] == pytest.approx(11.0 - 30.0 / 3.0)
@@ -144,7 +144,7 @@ def test_torque_over_rotation_has_the_run_and_its_limits(tmp_path):
     rows = ["25,0,-200,-4800", "25,0,-10,0", "25,0,-100,-2250"]
     (tmp_path / "history.csv").write_text("\n".join(["seat_height_mm,force_N,turn_deg,torque_Nmm", *rows]))
     sheet = case_sheet(case, spring, from_results.read(tmp_path))
-    found = document(case, spring, sheet, "", (), Words("de"))
+    found = document(case, spring, sheet, [], "", (), Words("de"))
     (panel,) = found.panels
     assert (panel.title, panel.layout["yaxis"]["title"]["text"]) == ("Moment über Drehwinkel", "Moment, N mm")
     formula, run, limits, points = panel.traces

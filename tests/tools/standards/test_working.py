@@ -1,6 +1,4 @@
-"""Warnings at working lengths and about presetting, each just on either side of its bound."""
-
-from dataclasses import replace
+"""Cylinders of the standard, and the warning about presetting, just on either side of its bound."""
 
 import numpy as np
 import pytest
@@ -9,12 +7,10 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.material.law.steel import STEEL, Elastic
-from coilset.model.tools.limits.working_warnings import gap_warnings, presetting_warning, stress_warnings
-from coilset.model.tools.sheet.from_results import Found
+from coilset.model.tools.limits.working_warnings import presetting_warning
 from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards import en13906
 from coilset.model.tools.standards.cylinder import Cylinder
-from coilset.model.tools.wires import wire
 
 SPEC = {
     "wire_diameter": 4.0,
@@ -48,40 +44,6 @@ def test_other_shapes_are_refused():
     assert str(error.value) == (
         "spring.mean_diameter: EN 13906-1 is for cylinders of one wire; the mean diameter goes from 30 to 40 mm"
     )
-
-
-def test_gap():
-    # Sa = 5.5 (0.0015 · 32²/4 + 0.4) = 4.312 mm over Lc = 7.5 · 4 = 30 mm; the geometry's coils touch at 28 mm
-    assert gap_warnings(made(cylinder(), [50.0, 34.32])) == []
-    (found,) = gap_warnings(made(cylinder(), [50.0, 34.3]))
-    assert found.message == (
-        "at 34.3 mm the gaps between the coils add up to 4.3 mm above the block length of 30 mm, less than the 4.31 mm "
-        "of EN 13906-1"
-    )
-    assert found.limit == pytest.approx(4.312)
-    assert len(gap_warnings(made(cylinder(), [34.32], dynamic=True))) == 1
-
-
-def test_stress():
-    # R = 81500 · 4⁴/(8 · 32³ · 5.5) = 14.47 N/mm; τ = 8 D R s/(π d³) = 18.42 s; 0.56 (2230 − 820 lg 4) = 972.3 N/mm²
-    known = wire("EN 10270-1 SH")
-    bound = 972.35 / 18.425
-    assert stress_warnings(made(cylinder(free_length=90.0)), [90 - bound + 0.1], known) == []
-    (found,) = stress_warnings(made(cylinder(free_length=90.0)), [90 - bound - 0.1], known)
-    assert found.name == "stress"
-    assert found.limit == pytest.approx(972.3, abs=0.1)
-    assert "allowed for EN 10270-1 SH" in found.message
-
-
-def test_stress_of_american_wire_is_corrected():
-    """Shigley's table 10-6: 45 % of Rm for music wire, with the correction for curvature in the stress."""
-    known, spring = wire("ASTM A228"), cylinder(free_length=90.0)
-    # G = 80,000: τ = 18.086 s; k = 8.5/7.25; Rm of the table at 4 mm, between 1744 and 1717
-    bound = 0.45 * known.strength(4.0) / (18.086 * 8.5 / 7.25)
-    assert stress_warnings(made(spring, shear_modulus=80000.0), [90 - bound + 0.1], known) == []
-    (found,) = stress_warnings(made(spring, shear_modulus=80000.0), [90 - bound - 0.1], known)
-    assert "the corrected stress of the formula's" in found.message
-    assert found.limit == pytest.approx(0.45 * 1726, rel=5e-3)
 
 
 def test_presetting():
@@ -123,19 +85,6 @@ def test_coils_of_variable_pitch_close_one_by_one():
         assert made(spring).force(spring.length - travel) == pytest.approx(force, rel=1e-3)
     assert made(spring).force(spring.solid) == pytest.approx(turn_rate * play.max(), rel=2e-3)
     assert made(spring).force(spring.solid) > 1.4 * made(spring).rate * (spring.length - spring.solid)
-
-
-def test_the_stress_of_a_variable_pitch_is_checked_by_its_own_force():
-    """By R (L0 − L) the spring passed, with 63 % of the force; above block a run's force decides."""
-    known, spring = wire("EN 10270-2 VDSiCr"), variable()
-    (formula,) = stress_warnings(made(spring), [spring.solid], known)
-    assert "of the formula's 1" in formula.message
-    above = spring.solid + 0.1
-    run = Found({}, np.array([spring.length, above]), np.array([0.0, 1031.0]), None, None)
-    (found,) = stress_warnings(replace(made(spring), found=run), [above], known)
-    assert "of the run's 1031 N is 1149 MPa" in found.message  # 8 D F/(π d³)
-    low = replace(run, forces=np.array([0.0, 500.0]))
-    assert stress_warnings(replace(made(spring), found=low), [above], known) == []
 
 
 def test_springs_of_thick_wire_are_coiled_hot():
