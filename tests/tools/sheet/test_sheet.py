@@ -297,7 +297,8 @@ def test_a_case_without_a_load_program_has_a_sheet(case, tmp_path, capsys):
 
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
     sheet(case, Options(out=[tmp_path / "out"]))
-    assert "tensile strength of ck15 is not known; give tensile_strength in its file" in capsys.readouterr().out
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "is not known; give tensile_strength in its file, or a wire by its name" in printed
     assert not (tmp_path / "out").exists()
 
 
