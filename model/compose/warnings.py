@@ -113,7 +113,7 @@ def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
         if not ends or setup.is_force_given(step):  # the steeper it is, the smaller is the error of the height there
             continue
         rate = (step.force_N - before.force_N) / travel
-        percent = steepness(before, step)
+        percent = steepness((before.travel_mm, step.travel_mm), (before.force_N, step.force_N), 1)
         if percent > VERTICAL:
             height = accuracy * step.force_N / abs(rate)
             message = (

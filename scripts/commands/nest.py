@@ -8,13 +8,16 @@ from mpi4py import MPI
 from rich.table import Table
 
 from coilset.model.core.results.files.folder import refuse_results
-from coilset.model.core.results.quantities import quantity
+from coilset.model.core.results.quantities import greatest_force, quantity
 from coilset.model.core.results.records.labels import plain
 from coilset.model.core.results.records.record import Step
 from coilset.model.core.runtime.threads import usual
+from coilset.model.tools.checks.nested import nested
 from coilset.model.tools.nest import output
 from coilset.model.tools.nest.file import read_nest
 from coilset.model.tools.nest.nest import Pressed, press
+from coilset.model.tools.sheet.from_results import of_steps
+from coilset.scripts.terminal.checks import check_lines
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
 
@@ -51,9 +54,16 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
 
 def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder: Path) -> None:
     apart = (0, 2, 0, 0)  # its rows fit in 80 columns
+    springs = {
+        one.name: (one.case, one.setup.spring, of_steps(found[one.name], one.result.steps))
+        for one in pressed.members
+        if one.result is not None
+    }
+    check_lines(console, nested(found, springs))
     table = Table("", "nest", *(member.name for member in pressed.members), box=None, padding=apart)
+    shown = tuple(greatest_force(found) if name == "force_max_N" else name for name in SHOWN)
     columns = [found, *(found[member.name] or {} for member in pressed.members)]
-    for name in SHOWN:
+    for name in shown:
         words = quantity(found, name).words
         table.add_row(words, *(quantity(one, name).text if name in one else "" for one in columns))
     table.add_row("minimum clearance", f"{plain(found['clearance_min_mm'])} mm", "", "")

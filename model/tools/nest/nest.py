@@ -20,6 +20,7 @@ from coilset.model.core.base.warning import Warning
 from coilset.model.core.case import Case
 from coilset.model.core.case.phases import Phase, Target
 from coilset.model.core.case.targets import check_pressed
+from coilset.model.core.results.records.closing import before_vertical
 from coilset.model.core.results.records.record import Errors, Result, Setup, Step
 from coilset.model.tools.nest.file import NAMES, Nest
 from coilset.model.tools.nest.plan import Plan, plan
@@ -72,6 +73,22 @@ class Pressed:
         """Estimated size of the error of the maximum force, N: those of both springs together; None if not known."""
         errors = [self._errors(member).force_N for member in self.members]
         return None if None in errors else sum(error for error in errors if error is not None)
+
+    def closing(self) -> tuple[float | None, float | None, float | None]:
+        """Height, mm, and force of both, N, before the vertical of a nest that is pressed to block, and the size of
+        that force's error; None where there is no vertical, or the error is not known."""
+        heights, force = self.plan.heights, self.force
+        last = int(np.argmin(heights))
+        travels = (heights[0] - heights[: last + 1]).tolist()
+        found = (
+            before_vertical(travels, force[: last + 1].tolist()) if heights[last] <= self.plan.block + NEAR else None
+        )
+        if found is None:
+            return None, None, None
+        steps = [_steps(member, self.plan)[found] for member in self.members]
+        errors = [0.0 if step is None else step.estimated_force_error_N for step in steps]
+        error = None if None in errors else sum(one for one in errors if one is not None)
+        return float(heights[found]), float(force[found]), error
 
     @property
     def set_error(self) -> float | None:

@@ -9,7 +9,7 @@ import numpy as np
 from coilset.model.compose.run_files import write_run
 from coilset.model.compose.summary import summarise
 from coilset.model.core.results.files.folder import RESULTS, clear, prepare, subfolder, write_summary, write_table
-from coilset.model.core.results.quantities import quantity
+from coilset.model.core.results.quantities import greatest_force, quantity
 from coilset.model.core.results.records.provenance import origin
 from coilset.model.tools.figures.panels.panel import GREY, Panel, axis, curve, upright
 from coilset.model.tools.figures.png import write_png
@@ -24,6 +24,7 @@ def summary(pressed: Pressed) -> dict[str, Any]:
     """The content of summary.json, as plain data; of a spring that was not reached the summary is None."""
     plan, after = pressed.plan, pressed.free_length_after
     tight = int(np.argmin(pressed.clearance))
+    height, force, error = pressed.closing()
     return {
         "free_length_before_mm": plan.free_length,
         "free_length_after_mm": after,
@@ -32,6 +33,9 @@ def summary(pressed: Pressed) -> dict[str, Any]:
         "block_height_mm": plan.block,
         "force_max_N": float(pressed.force.max()),
         "estimated_force_error_N": pressed.force_error,
+        "closing_force_N": force,
+        "closing_height_mm": height,
+        "estimated_closing_force_error_N": error,
         "clearance_min_mm": float(pressed.clearance[tight]),
         "clearance_min_height_mm": float(plan.heights[tight]),
         **{
@@ -76,7 +80,8 @@ def write(folder: Path, pressed: Pressed, force: bool = False, pictures: bool = 
 def headline(found: Mapping[str, Any]) -> str:
     """Maximum force and set of a nest, of its summary."""
     lost = "" if found["set_mm"] is None else f", set {quantity(found, 'set_mm').text}"
-    return f"Maximum force {quantity(found, 'force_max_N').text}{lost}".replace("-", "−")
+    force = quantity(found, greatest_force(found))
+    return f"{force.words[0].upper()}{force.words[1:]} {force.text}{lost}".replace("-", "−")
 
 
 def characteristic(columns: Mapping[str, np.ndarray], found: Mapping[str, Any]) -> Panel:

@@ -8,12 +8,16 @@ from typing import Any
 
 import numpy as np
 
+from coilset.meshes.springs.geometry import Spring
 from coilset.model.core.base.columns import read_columns
 from coilset.model.core.base.errors import InputError, reading
 from coilset.model.core.base.style import round_end
+from coilset.model.core.case import Case, check
 from coilset.model.core.results.files.folder import subfolder
 from coilset.model.core.results.files.opened import Run, open_run
-from coilset.model.core.results.quantities import quantity
+from coilset.model.core.results.quantities import greatest_force, quantity
+from coilset.model.tools.checks.check import sentence
+from coilset.model.tools.checks.nested import nested
 from coilset.model.tools.figures.panels.panel import Panel, Trace, axis, curve, with_unit
 from coilset.model.tools.figures.panels.spring_view import scene_of, shown_surface, surface_trace
 from coilset.model.tools.figures.wire_surface import closed, frames, tubes
@@ -22,6 +26,8 @@ from coilset.model.tools.nest.output import STEPS, characteristic
 from coilset.model.tools.report.answer import Number, number
 from coilset.model.tools.report.page import made_with, write_report
 from coilset.model.tools.report.render import NAME, write_page
+from coilset.model.tools.sheet import from_results
+from coilset.model.tools.sheet.from_results import Found
 
 FILE = STEPS  # by which the folder of a nest is known
 STRESSES = ("shear_inside_max_MPa", "residual_shear_inside_MPa")
@@ -52,6 +58,7 @@ def write_nest_report(folder: str | Path) -> Path:
     for name, run in runs.items():
         subfolder(folder, name)
         write_report(run)
+    made = nested(summary, {name: _checked(run) for name, run in runs.items()})
     top = int(np.argmax(np.abs(columns["force_N"])))
     shares = {name: columns[f"{name}_force_N"][top] / (columns["force_N"][top] or 1.0) for name in NAMES}
     warnings = [one["message"] for one in summary["warnings"]]
@@ -72,7 +79,7 @@ def write_nest_report(folder: str | Path) -> Path:
             ),
             number(quantity(summary, "free_length_after_mm")),
             replace(
-                number(quantity(summary, "force_max_N")),
+                number(quantity(summary, greatest_force(summary))),
                 remark=", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items()),
             ),
             Number(
@@ -86,10 +93,17 @@ def write_nest_report(folder: str | Path) -> Path:
                 f"between the springs, at a height of {summary['clearance_min_height_mm']:.4g} mm",
             ),
         ],
+        checks=made,
+        verdict=sentence(made),
         springs=[_spring(name, one, shares[name], columns[f"{name}_force_N"][top]) for name, one in springs.items()],
         warnings=warnings,
         made_with=made_with(next(iter(runs.values())).summary["origin"]),
     )
+
+
+def _checked(run: Run) -> tuple[Case, Spring, Found]:
+    case = check(run.case)
+    return case, case.spring.build(), from_results.read(run.folder)
 
 
 def _length(value: float | None, digits: int) -> str:

@@ -31,7 +31,8 @@ def to(*phases):
 def test_the_last_step_before_the_vertical_is_where_coils_close():
     """From 30.05 mm on 670 N in 0.05 mm: by 1 % of the travel 298 % of the force; to there 33 % by 1 %."""
     steps, setup = stepped(WALL, BACK), to("block", "force 0 N")
-    assert steepness(steps[2], steps[3]) == pytest.approx(670.0 / 0.05 * 20.0 / 900.0)
+    travels, forces = [step.travel_mm for step in steps], [step.force_N for step in steps]
+    assert steepness(travels, forces, 3) == pytest.approx(670.0 / 0.05 * 20.0 / 900.0)
     assert closing(setup, steps).force_N == 230.0
     assert closing_entries(setup, steps)["closing_height_mm"] == 30.05
     assert stands_on_wall(setup, steps)

@@ -10,12 +10,18 @@ VERTICAL = 20.0
 of constant rate has 1, the example at block 1.1, a cone 160."""
 
 
-def steepness(before: Step, step: Step) -> float:
-    """Change of the force from one step to the next over that of the travel, both in per cent of the latter's."""
-    travel = step.travel_mm - before.travel_mm
-    if not (travel and step.force_N):
-        return 0.0
-    return abs((step.force_N - before.force_N) / travel) * step.travel_mm / step.force_N
+def steepness(travels: Sequence[float], forces: Sequence[float], k: int) -> float:
+    """Change of the force up to number k of a curve over that of the travel, both in per cent of those at k."""
+    travel, force = travels[k] - travels[k - 1], forces[k] - forces[k - 1]
+    return abs(force / travel) * travels[k] / forces[k] if travel and forces[k] else 0.0
+
+
+def before_vertical(travels: Sequence[float], forces: Sequence[float]) -> int | None:
+    """Number of the last point of a compression before it becomes vertical; None if it is not at its end, or always."""
+    for k in range(len(travels) - 1, 0, -1):
+        if steepness(travels, forces, k) <= VERTICAL:
+            return k if k < len(travels) - 1 else None
+    return None
 
 
 def closing(setup: Setup, steps: Sequence[Step]) -> Step | None:
@@ -24,13 +30,9 @@ def closing(setup: Setup, steps: Sequence[Step]) -> Step | None:
     ends = [k for k, step in enumerate(steps) if step.progress >= 1.0 and setup.phases[step.phase] == "block"]
     if not ends:
         return None
-    phase, last = steps[ends[-1]].phase, ends[-1]
-    for k in range(last, 0, -1):
-        if steps[k - 1].phase != phase:
-            return None
-        if steepness(steps[k - 1], steps[k]) <= VERTICAL:
-            return steps[k] if k < last else None
-    return None
+    way = [step for step in steps[: ends[-1] + 1] if step.phase == steps[ends[-1]].phase]
+    found = before_vertical([step.travel_mm for step in way], [step.force_N for step in way])
+    return None if found is None else way[found]
 
 
 def stands_on_wall(setup: Setup, steps: Sequence[Step]) -> bool:
