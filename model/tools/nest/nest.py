@@ -6,7 +6,7 @@ the maximum distance of the one and the minimum distance of the other from the a
 sufficient, not necessary: a cone may fit into a cone with less. Contact between the two is not computed.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -71,24 +71,23 @@ class Pressed:
     @property
     def force_error(self) -> float | None:
         """Estimated size of the error of the maximum force, N: those of both springs together; None if not known."""
-        errors = [self._errors(member).force_N for member in self.members]
-        return None if None in errors else sum(error for error in errors if error is not None)
+        return _sum(self._errors(member).force_N for member in self.members)
 
     def closing(self) -> tuple[float | None, float | None, float | None]:
         """Height, mm, and force of both, N, before the vertical of a nest that is pressed to block, and the size of
         that force's error; None where there is no vertical, or the error is not known."""
         heights, force = self.plan.heights, self.force
         last = int(np.argmin(heights))
-        travels = (heights[0] - heights[: last + 1]).tolist()
-        found = (
-            before_vertical(travels, force[: last + 1].tolist()) if heights[last] <= self.plan.block + NEAR else None
-        )
-        if found is None:
+        if heights[last] > self.plan.block + NEAR:
             return None, None, None
-        steps = [_steps(member, self.plan)[found] for member in self.members]
-        errors = [0.0 if step is None else step.estimated_force_error_N for step in steps]
-        error = None if None in errors else sum(one for one in errors if one is not None)
-        return float(heights[found]), float(force[found]), error
+        own = [_steps(member, self.plan) for member in self.members]
+        errors = [
+            _sum(0.0 if step is None else step.estimated_force_error_N for step in both)
+            for both in zip(*own, strict=True)
+        ]
+        travels = (heights[0] - heights[: last + 1]).tolist()
+        found = before_vertical(travels, force[: last + 1].tolist(), errors[: last + 1])
+        return (None, None, None) if found is None else (float(heights[found]), float(force[found]), errors[found])
 
     @property
     def set_error(self) -> float | None:
@@ -121,6 +120,12 @@ class Pressed:
         if not member.result.complete:
             return None
         return float(member.setup.outer_length(member.result.snapshots[-1].x))
+
+
+def _sum(errors: Iterable[float | None]) -> float | None:
+    """Of errors of both springs; None if one is not known."""
+    known = list(errors)
+    return None if None in known else sum(one for one in known if one is not None)
 
 
 def press(nest: Nest, report: Callable[[str, Step], object] = lambda name, step: None, threads: int = 1) -> Pressed:

@@ -5,7 +5,13 @@ from types import SimpleNamespace
 import pytest
 
 from coilset.model.core.results.quantities import quantities
-from coilset.model.core.results.records.closing import closing, closing_entries, stands_on_wall, steepness
+from coilset.model.core.results.records.closing import (
+    before_vertical,
+    closing,
+    closing_entries,
+    stands_on_wall,
+    steepness,
+)
 from coilset.model.core.results.records.record import Step
 
 
@@ -25,7 +31,7 @@ BACK = [(40.0, 80.0), (48.0, 0.0)]
 
 
 def to(*phases):
-    return SimpleNamespace(phases=phases)
+    return SimpleNamespace(phases=phases, spring=SimpleNamespace(block_height=30.0))
 
 
 def test_the_last_step_before_the_vertical_is_where_coils_close():
@@ -42,7 +48,7 @@ def test_the_last_step_before_the_vertical_is_where_coils_close():
     ("steps", "phases"),
     [
         (stepped(SOFT, BACK), ("block", "force 0 N")),  # no vertical
-        (stepped(WALL, BACK), ("height 30 mm", "force 0 N")),  # a height that is wanted
+        (stepped(WALL[:3], BACK), ("height 30.05 mm", "force 0 N")),  # above block
         (stepped(WALL[:3], BACK)[:2], ("block", "force 0 N")),  # ended before block
         ([], ()),
     ],
@@ -50,6 +56,14 @@ def test_the_last_step_before_the_vertical_is_where_coils_close():
 def test_without_a_vertical_to_block_there_is_none(steps, phases):
     assert closing(to(*phases), steps) is None
     assert not stands_on_wall(to(*phases), steps)
+
+
+def test_steps_too_long_to_show_the_vertical_have_its_error():
+    """A nest in 12 steps of 8 mm: from 35 to 80 kN ± 90 % in the last one, which is a slope of 7 % by 1 %."""
+    forces = [33e3, 80e3]
+    assert before_vertical([90.0, 98.0], forces, [200.0, 70e3]) == 0
+    assert before_vertical([90.0, 98.0], forces, [200.0, 1e3]) is None
+    assert before_vertical([90.0, 98.0], forces, [None, None]) is None
 
 
 def test_of_several_compressions_the_last_one_counts():
