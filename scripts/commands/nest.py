@@ -65,7 +65,9 @@ def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder:
     columns = [found, *(found[member.name] or {} for member in pressed.members)]
     for name in shown:
         words = quantity(found, name).words
-        table.add_row(words, *(quantity(one, name).text if name in one else "" for one in columns))
+        # of one spring the force where both close is not stated
+        cells = (one for one in columns if one is found or name != "closing_force_N")
+        table.add_row(words, *(quantity(one, name).text if name in one else "" for one in cells))
     table.add_row("minimum clearance", f"{plain(found['clearance_min_mm'])} mm", "", "")
     console.print(table)
     for warning in pressed.warnings:
