@@ -10,8 +10,8 @@ from coilset.model.core.case import Case
 from coilset.model.tools.checks.check import Check
 from coilset.model.tools.checks.permissible import COMPUTED
 from coilset.model.tools.checks.table import checks
+from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.from_results import Found
-from coilset.model.tools.standards.case_sheet import case_sheet
 
 
 def nested(summary: Mapping[str, Any], springs: Mapping[str, tuple[Case, Spring, Found]]) -> list[Check]:
