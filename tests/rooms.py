@@ -33,7 +33,7 @@ CHANGES = {
         "model/physics/time/increment.py",
         "model/core/material/law/file.py",
     ],
-    "a warning": ["model/compose/warnings.py", "model/tools/checks/warnings.py", "model/tools/report/warning_words.py"],
+    "a warning": ["model/compose/warnings.py", "model/core/results/told.py", "model/tools/report/warning_words.py"],
     "a figure": [
         "model/tools/figures/panels/panel.py",
         "model/tools/report/page.py",

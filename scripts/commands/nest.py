@@ -55,7 +55,7 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
 def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder: Path) -> None:
     apart = (0, 2, 0, 0)  # its rows fit in 80 columns
     springs = {
-        one.name: (one.case, one.setup.spring, of_steps(found[one.name], one.result.steps))
+        one.name: (one.case, one.spring, of_steps(found[one.name], one.result.steps))
         for one in pressed.members
         if one.result is not None
     }

@@ -7,7 +7,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
@@ -16,15 +16,13 @@ from coilset.model.compose.run_files import write_run
 from coilset.model.compose.summary import summarise
 from coilset.model.core.base.agreement import on_first_rank
 from coilset.model.core.base.errors import CoilsetError, InputError, SolveError, naming
+from coilset.model.core.base.package import optional
 from coilset.model.core.case import Case, read_case
 from coilset.model.core.results.files.checkpoint import Checkpoint
 from coilset.model.core.results.files.folder import DRAWN, RESULTS, clear, prepare
 from coilset.model.core.results.records.provenance import origin
 from coilset.model.core.results.records.record import Step
 from coilset.model.core.runtime.threads import usual
-from coilset.model.tools.checks.check import Check
-from coilset.model.tools.checks.table import checks
-from coilset.model.tools.sheet.from_results import of_steps
 from coilset.scripts.compiling import compile_first
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.drawing import Drawings
@@ -32,6 +30,9 @@ from coilset.scripts.terminal.interactive import Prompt
 from coilset.scripts.terminal.log import run_log
 from coilset.scripts.terminal.progress import VOICES, Lines
 from coilset.scripts.terminal.target import results_folder
+
+if TYPE_CHECKING:
+    from coilset.model.tools.checks.check import Check
 
 log = logging.getLogger("coilset.steps")
 try:
@@ -87,11 +88,13 @@ def _prepare(folder: Path, case: Case, force: bool, resume: bool) -> None:
     prepare(folder, force or resume)
 
 
-def _checks(analysis: Analysis, summary: dict[str, Any]) -> list[Check]:
-    """Of the spring and its run; none of a run without steps."""
-    if not analysis.result.steps:
+def _checks(analysis: Analysis, summary: dict[str, Any]) -> "list[Check]":
+    """Of the spring and its run; none of a run without steps, or where their package is missing."""
+    table = optional("coilset.model.tools.checks.table")
+    records = optional("coilset.model.tools.sheet.from_results")
+    if table is None or records is None or not analysis.result.steps:
         return []
-    return checks(analysis.case, analysis.spring, of_steps(summary, analysis.result.steps))
+    return table.checks(analysis.case, analysis.spring, records.of_steps(summary, analysis.result.steps))
 
 
 @dataclass

@@ -20,13 +20,12 @@ from coilset.model.core.contact.base import SEAT_DOFS
 from coilset.model.core.results.quantities import quantities
 from coilset.model.core.results.records.labels import lives_text, within
 from coilset.model.core.results.records.record import ContactRecord, SeatReactions, Step
-from coilset.model.tools.checks.check import Check
-from coilset.model.tools.checks.warnings import told
-from coilset.scripts.terminal.checks import check_lines
+from coilset.model.core.results.told import told
 from coilset.scripts.terminal.console import Console, styled, table
 
-if TYPE_CHECKING:  # not where a rod is solved
+if TYPE_CHECKING:  # not where a rod is solved, or without checks
     from coilset.model.physics.slice.analysis import SliceStep
+    from coilset.model.tools.checks.check import Check
 
 PRESSED = f"{'step':>5}{'height/mm':>10}{'force/N':>12}"
 HEAD = f"{PRESSED}{'iter.':>6}"  # of `step_row`
@@ -111,16 +110,19 @@ class Lines:
         """Context of the iterations of a run."""
         return contextlib.nullcontext()
 
-    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+    def conclude(self, summary: Mapping[str, Any], made: "Sequence[Check]", out: Path) -> None:
         """Print the results and the checks of the spring; warnings last, the most important one first."""
         self._answer(summary, made)
         self.console.say(f"  results in {out}{os.sep}", whole=True)
         for message in told(summary):
             self.warn(message)
 
-    def _answer(self, summary: Mapping[str, Any], made: Sequence[Check]) -> None:
+    def _answer(self, summary: Mapping[str, Any], made: "Sequence[Check]") -> None:
         self._close()
-        check_lines(self.console, made)
+        if made:
+            from coilset.scripts.terminal.checks import check_lines  # only where their package is
+
+            check_lines(self.console, made)
         self.console.quantities(quantities(summary))
         if summary["working"]:
             self.console.print(working_table(summary["working"]))
@@ -187,7 +189,7 @@ class Steps(Lines):
             return step_row(step)
         return f"{_pressed(step)}{step.turn_deg:z9.2f}{step.torque_Nmm:z13.1f}{step.iterations:6d}"
 
-    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+    def conclude(self, summary: Mapping[str, Any], made: "Sequence[Check]", out: Path) -> None:
         """Print the results, after the last step of a run that ended early."""
         if self._unsaid is not None:
             self._print(self._unsaid)
@@ -227,7 +229,7 @@ class Quiet(Lines):
     def step(self, step: Step) -> None:
         """Nothing."""
 
-    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+    def conclude(self, summary: Mapping[str, Any], made: "Sequence[Check]", out: Path) -> None:
         """The checks and the numbers."""
         self._answer(summary, made)
 
@@ -235,7 +237,7 @@ class Quiet(Lines):
 class Silent(Quiet):
     """Nothing at all."""
 
-    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+    def conclude(self, summary: Mapping[str, Any], made: "Sequence[Check]", out: Path) -> None:
         """Nothing."""
 
 
@@ -277,7 +279,7 @@ class JsonLines(Lines):
         touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats)
         self._put("step", **asdict(step), touching=touching, done=_done(self.analysis, step))
 
-    def conclude(self, summary: Mapping[str, Any], made: Sequence[Check], out: Path) -> None:
+    def conclude(self, summary: Mapping[str, Any], made: "Sequence[Check]", out: Path) -> None:
         """The summary, as in summary.json, and the checks."""
         checks = [asdict(one) | {"verdict": one.verdict.value, "reserve": one.reserve} for one in made]
         self._put("end", folder=str(out), summary=dict(summary), checks=checks)
