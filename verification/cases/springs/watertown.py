@@ -12,9 +12,10 @@ with closed and ground ends between seats, whose turns follow from the weight an
 height.
 
 That rod is pressed with the greatest of the loads read, and closes where it comes to stand on a wall
-(`coilset.model.compose.warnings`): where one per cent of travel takes more than 20 per cent of force, at 12,010 to
-12,250 N with 10, 20 and 32 elements a turn and contact stiffnesses of E/4 and 4 E. The force at the geometry's block
-height is no result: it is beyond the closing and the contacts' own, 12,320 N with E/40 and 22,320 N with E/4.
+(`coilset.model.core.results.records.closing`): where one per cent of travel takes more than 20 per cent of force, at
+12,010 to 12,250 N with 10, 20 and 32 elements a turn and contact stiffnesses of E/4 and 4 E. The force at the
+geometry's block height is no result: it is beyond the closing and the contacts' own, 12,320 N with E/40 and 22,320 N
+with E/4.
 
 What is judged is what the yield stress was not fitted to: the force at closing must lie between the loads read (the
 mean of 2,600 and 3,000 pounds, ± half their difference), and the gap that follows from weight and heights must be the
@@ -34,11 +35,11 @@ from scipy.optimize import brentq
 
 from coilset.model.compose.analysis import Analysis
 from coilset.model.compose.summary import summarise
-from coilset.model.compose.warnings import WALL
 from coilset.model.core.base.style import STYLE
 from coilset.model.core.case import Case, check
 from coilset.model.core.material.law.file import MaterialFile
 from coilset.model.core.material.law.law import Law
+from coilset.model.core.results.records.closing import VERTICAL
 from coilset.model.core.results.records.record import Result
 from coilset.model.physics.uniform_coil.rod import press
 from coilset.verification.study import Study
@@ -184,7 +185,7 @@ def run(study: Study) -> None:
 def closing(result: Result) -> float:
     """Force from which the rod stands on a wall, in its second phase, N; NaN where it never does."""
     travels, forces = np.array([(step.travel_mm, step.force_N) for step in result.steps if step.phase == 1]).T
-    solid = np.diff(forces) / forces[1:] > WALL * np.diff(travels) / travels[1:]
+    solid = np.diff(forces) / forces[1:] > VERTICAL * np.diff(travels) / travels[1:]
     return float(forces[np.argmax(solid)]) if solid.any() else np.nan
 
 
