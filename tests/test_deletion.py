@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import rooms
 
 PACKAGES = sorted(name for name in rooms.plan()["rooms"] if rooms.floor_of(name) in rooms.PACKAGES)
-USED = {"accuracy", "further_runs", "limits", "reactions", "stability", "standards", "wires"}
+USED = {"accuracy", "further_runs", "limits", "outlines", "reactions", "stability", "standards", "warping", "wires"}
 """Packages that every run is without if they are deleted, or if those are that they are built on."""
 SMALL = [
     "mesh.elements_per_turn=4",
