@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from coilset.model.core.base.errors import CoilsetError, InputError, printable
+from coilset.model.core.base.errors import CoilsetError, InputError, how_to_install, printable
 from coilset.model.core.runtime.processes import first_rank, number_of_ranks
 from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL, STOPPED, Output, output_closed
 from coilset.scripts.main import app
@@ -71,6 +71,13 @@ def run() -> None:
         status = error.exit_code
         _leave_together(status, TOGETHER, str(error))
         _complain(str(error))
+    except ModuleNotFoundError as error:
+        if (words := how_to_install(error)) is None:
+            _crash()
+            raise
+        status = InputError.exit_code
+        _leave_together(status, TOGETHER, words)
+        _complain(words)
     except OSError as error:
         if error.errno not in NO_ROOM:
             _crash()

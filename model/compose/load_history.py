@@ -22,6 +22,7 @@ from coilset.model.compose.contacts import build_contacts, seats_at
 from coilset.model.compose.parts import installed
 from coilset.model.compose.recorder import Recorder
 from coilset.model.compose.setup import build_setup
+from coilset.model.compose.shape import LeastRise
 from coilset.model.core.base.agreement import max_of_ranks
 from coilset.model.core.base.entry import check_entries, shortened
 from coilset.model.core.base.errors import InputError, SolveError
@@ -44,7 +45,6 @@ from coilset.model.core.material.law.law import Law
 from coilset.model.core.results.files.checkpoint import Saved
 from coilset.model.core.results.records.record import Result, Snapshot, Step
 from coilset.model.core.results.records.releases import is_released
-from coilset.model.core.results.records.shape import LeastRise
 
 log = logging.getLogger("coilset.steps")
 BALANCE = "coilset.model.physics.reactions.balance"

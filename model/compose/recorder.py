@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.compose.parts import installed
+from coilset.model.compose.shape import LeastRise, clearance
 from coilset.model.compose.warnings import step_warnings
 from coilset.model.core.base.agreement import max_of_ranks
 from coilset.model.core.base.warning import Warning
@@ -19,6 +20,7 @@ from coilset.model.core.equilibrium.path.program import StepTaken
 from coilset.model.core.equilibrium.system.heads import Heads
 from coilset.model.core.equilibrium.system.system import System
 from coilset.model.core.results import surface
+from coilset.model.core.results.records.axis import axis_offset
 from coilset.model.core.results.records.record import (
     BucklingMode,
     Frame,
@@ -28,7 +30,6 @@ from coilset.model.core.results.records.record import (
     Step,
     Working,
 )
-from coilset.model.core.results.records.shape import LeastRise, axis_offset, clearance
 from coilset.model.core.rod.rod import Rod
 
 log = logging.getLogger("coilset.steps")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coilset.model.compose.summary import summarise
+from coilset.model.core.base.errors import how_to_install
 from coilset.model.core.results.files.folder import (
     DERIVED,
     clear,
@@ -24,16 +25,17 @@ if TYPE_CHECKING:  # loading what reads takes longer than a short run
     from coilset.model.core.results.files.opened import Run
 
 
-def write_run(out: Path, setup: Setup, result: Result, summary: dict[str, Any], made_with: dict[str, Any]) -> None:
-    """Write the results of a run, without pictures, into its folder."""
+def write_run(out: Path, setup: Setup, result: Result, summary: dict[str, Any], made_with: dict[str, Any]) -> list[str]:
+    """Write the results of a run, without pictures, into its folder; returns what could not be written, in words."""
     from coilset.model.compose import dataset
 
     clear(out, DERIVED)  # a continued run still has the pictures and the page of before
     write_history(out, result.steps)
     write_seats(out, result.seats)
     dataset.write_points(out, setup, result, made_with)
-    write_fields(out, setup, result.snapshots)
+    lacking = write_fields(out, setup, result.snapshots)
     write_summary(out, {**summary, "origin": made_with})
+    return lacking
 
 
 def run_of(setup: Setup, result: Result, made_with: dict[str, Any]) -> "Run":
@@ -45,9 +47,16 @@ def run_of(setup: Setup, result: Result, made_with: dict[str, Any]) -> "Run":
         return open_run(folder)
 
 
-def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]) -> None:
-    """fields/NN.vtu: the line mesh at each snapshot with resultants and the maximum stresses, for ParaView."""
-    import meshio
+def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]) -> list[str]:
+    """fields/NN.vtu: the line mesh at each snapshot with resultants and the maximum stresses, for ParaView.
+
+    Returns:
+        What is not written, in words: without meshio there are none.
+    """
+    try:
+        import meshio
+    except ModuleNotFoundError as error:
+        return [f"fields for ParaView are not written: {how_to_install(error)}"]
 
     from coilset.model.compose.dataset import RESULTANTS
 
@@ -65,3 +74,4 @@ def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]
         data["wire_radius_mm"] = [setup.wire_radius]
         with whole(folder / f"{number:02d}.vtu") as path:
             meshio.write(path, meshio.Mesh(shot.x, cells, cell_data=data))
+    return []

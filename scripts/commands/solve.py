@@ -162,8 +162,11 @@ def _solve(first: Analysis, runs: _Runs, drawings: Drawings | None) -> None:
     runs.interrupt.over()
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
-    on_first_rank(comm, lambda: write_run(folder, analysis.setup, analysis.result, summary, origin(analysis.case)))
+    setup, result = analysis.setup, analysis.result
+    lacking = on_first_rank(comm, lambda: write_run(folder, setup, result, summary, origin(analysis.case)))
     output.conclude(summary, _checks(analysis, summary) if comm.rank == 0 else [], folder)
+    for problem in lacking or ():
+        output.warn(problem)
     for warning in summary["warnings"]:
         log.warning("warning: %s: %s", warning["name"], warning["message"])
     if drawings and analysis.result.steps and not runs.interrupt.hurries:  # without steps there is nothing to draw

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
 
-from coilset.model.core.base.errors import CoilsetError
+from coilset.model.core.base.errors import CoilsetError, how_to_install
 from coilset.model.core.runtime.libraries import LazyFinder
 from coilset.model.core.runtime.processes import end_with_parent, first_rank, number_of_ranks, usable_cores
 
@@ -129,9 +129,14 @@ def _ended(status: int) -> dict[str, Any]:
 
 def draw_part(part: str, task: BinaryIO) -> dict[str, Any] | None:
     """Load the libraries of a part, wait for the folder of the run, and draw it; None if no folder is given."""
-    from coilset.model.tools.figures import pictures
+    try:
+        from coilset.model.tools.figures import pictures
 
-    draw = pictures.PARTS[part]()
+        draw = pictures.PARTS[part]()
+    except ModuleNotFoundError as error:
+        if (words := how_to_install(error)) is None:
+            raise
+        return {"problem": None, "warnings": [f"no pictures are drawn: {words}"]} if task.read() else None
     folder = task.read()
     if not folder:
         return None

@@ -77,3 +77,22 @@ class SolveError(CoilsetError):
 
     exit_code = 3
     result: Any = None
+
+
+EXTRAS = {
+    "mesh": ("gmsh", "meshio"),
+    "pictures": ("matplotlib", "PIL", "pyvista", "vtk", "vtkmodules"),
+    "report": ("jinja2", "plotly"),
+    "sweep": ("pyarrow",),
+    "modes": ("slepc4py",),
+    "cluster": ("dask", "distributed"),
+    "search": ("optuna", "SALib"),
+}
+"""The libraries that a run does without: the modules of each extra of pyproject.toml."""
+
+
+def how_to_install(error: ModuleNotFoundError) -> str | None:
+    """One line on the library that could not be imported; None if it belongs to no extra."""
+    library = (error.name or "").partition(".")[0]
+    extra = next((name for name, modules in EXTRAS.items() if library in modules), None)
+    return extra and f"this needs {library}, which is not installed: pip install 'coilset[{extra}]'"

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from coilset.model.core.base.errors import InputError
 from coilset.model.core.results.files.folder import whole
 from coilset.model.tools.checks.check import HEADS
 from coilset.model.tools.figures.panels.panel import Panel
@@ -102,12 +101,8 @@ def _part(name: str) -> str:
 
 def _plotly() -> str:
     """The library that draws, compressed."""
-    try:
-        from plotly.offline import get_plotlyjs
-    except ImportError:
-        raise InputError(
-            "is not installed; the report draws with it: install python3-plotly, or pip install plotly", "", "plotly"
-        ) from None
+    from plotly.offline import get_plotlyjs
+
     return compressed(get_plotlyjs())
 
 

@@ -158,7 +158,7 @@ def of_parquet(path: str | Path, name: str) -> ControlVariate:
 
     Raises:
         ValueError: no or too few rods have it.
-        ImportError: the package pyarrow is not installed.
+        ModuleNotFoundError: pyarrow is not installed.
     """
     import pyarrow.compute as pc
     import pyarrow.parquet as pq

@@ -16,8 +16,8 @@ from coilset.model.core.equilibrium.path.continuation import Continuation
 from coilset.model.core.equilibrium.settings import StepControl
 from coilset.model.core.equilibrium.system.load import Drag
 from coilset.model.core.equilibrium.system.system import Evaluation
+from coilset.model.core.results.records.axis import axis_offset
 from coilset.model.core.results.records.record import Step
-from coilset.model.core.results.records.shape import axis_offset
 from coilset.model.physics.stability.branch_switching import Snap
 from coilset.model.physics.stability.buckling import buckling, leaning
 from coilset.model.physics.stability.stability import mode_in_words, negative_pivots

@@ -1,6 +1,8 @@
 """All that a picture shows is in it: springs of any shape, programs of many cycles, numbers of any size."""
 
 import itertools
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
@@ -339,3 +341,13 @@ def test_titles_and_legends_are_whole_and_clear_of_each_other(analysis, size):
             assert figure.bbox.y0 <= box.y0
             assert box.y1 <= figure.bbox.y1
         assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))
+
+
+def test_drawing_loads_no_solver():
+    """Nor MPI: where ranks solve, a process that draws would join them, and wait."""
+    program = (
+        "import sys; from coilset.model.tools.figures import pictures; [make() for make in pictures.PARTS.values()]"
+    )
+    program += "; print(*{'mpi4py.MPI', 'petsc4py.PETSc', 'dolfinx'}.intersection(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []

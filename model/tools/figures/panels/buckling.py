@@ -6,8 +6,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from coilset.model.core.results.files.opened import Run
+from coilset.model.core.results.records.axis import turn_means
 from coilset.model.core.results.records.labels import plain
-from coilset.model.core.results.records.shape import turn_means
 from coilset.model.tools.figures.panels.panel import GREY, Panel, axis, curve
 
 POINTS_PER_TURN = 48

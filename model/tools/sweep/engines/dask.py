@@ -18,12 +18,11 @@ def dask_pool(scheduler: str) -> Iterator[Pool]:
         scheduler: address such as `tls://host:8786`.
 
     Raises:
-        InputError: Dask is not installed, or the scheduler does not answer or has no workers.
+        ModuleNotFoundError: Dask is not installed.
+        InputError: the scheduler does not answer or has no workers.
     """
-    try:
-        from distributed import Client
-    except ImportError:
-        raise InputError("needs the package distributed (Dask)", "--engine") from None
+    from distributed import Client
+
     try:
         client = Client(scheduler, timeout=CONNECT_SECONDS)
     except (OSError, ValueError) as error:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
-from coilset.model.core.results.records.shape import LeastRise
+from coilset.model.compose.shape import LeastRise
 
 TURNS = np.linspace(0.0, 4.0, 65)
 
