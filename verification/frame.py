@@ -7,7 +7,6 @@ import numpy as np
 from mpi4py import MPI
 from scipy.spatial.transform import Rotation
 
-from coilset.meshes.springs.placement import Placement
 from coilset.model.core.contact.base import Contact
 from coilset.model.core.equilibrium.newton.contact_limit import ContactLimit
 from coilset.model.core.equilibrium.newton.methods import rod_method
@@ -40,7 +39,7 @@ class Frame:
         method, options: of `equilibrium/newton/methods.py`, and further PETSc options; the tolerance is the
             thesis's 1e-7.
         contacts: kinds of contact.
-        placement: of sections beside the chords, as for Rod.
+        of_rod: further arguments of Rod, such as `placement` and `element`; default: the thesis's.
 
     Attributes:
         load: Load of the last step, which knows what is held.
@@ -57,10 +56,11 @@ class Frame:
         method: str = "newton",
         options: Mapping[str, Any] | None = None,
         contacts: Sequence[Contact] = (),
-        placement: Placement | None = None,
+        **of_rod: Any,
     ) -> None:
         line = frame_mesh(nodes, np.asarray(pairs), MPI.COMM_SELF)
-        self.rod = Rod(line, np.broadcast_to(np.asarray(radius, float), len(pairs)), law, rule, placement)
+        radii = np.broadcast_to(np.asarray(radius, float), len(pairs))
+        self.rod = Rod(line, radii, law, rule, **of_rod)
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, np.zeros(SEATS))
         # an arc by which every node moves by about the wire's radius
@@ -121,7 +121,7 @@ class Frame:
 
     @property
     def resultants(self) -> np.ndarray:
-        """N, Q2, Q3, Mt, M2, M3 at both Gauss sections in the order of the elements, shape (m, 2, 6), N and N mm."""
+        """N, Q2, Q3, Mt, M2, M3 at the sections, in the order of the elements, shape (m, sections, 6), N and N mm."""
         out = np.empty_like(self.rod.coefficients.s)
         out[self.rod.line.element] = self.rod.coefficients.s
         return out

@@ -211,7 +211,7 @@ def listened(analysis):
 def test_steps_count_what_failed_before_them(make, caplog):
     """All evaluations of all solves but the initial rate's are in the steps, and each failure is counted once."""
     caplog.set_level(logging.INFO, logger="coilset.steps")
-    analysis = make("[{to: block, steps: 2}]", "solver.options.snes_max_it=7")
+    analysis = make("[{to: block, steps: 3}]", "solver.options.snes_max_it=6")
     analysis.initial_rate()
     solved = listened(analysis)
     before = analysis.system.evaluations

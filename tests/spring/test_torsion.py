@@ -108,7 +108,10 @@ def test_a_spring_that_is_turned_in_vain_has_reached_a_torque(monkeypatch, capsy
 
 @pytest.mark.parametrize("to", [{"turn": 60.0}, {"torque": 950.0}])
 def test_torque_rotation_and_set_have_the_meshs_error(to):
-    """Against four times the elements; the error falls with the second power of their length, a third is stated."""
+    """Stated errors are above the true ones, and at most 2.2 % of the numbers: those of the rotation by a torque.
+
+    True ones, against four times the elements, are 1e-6 to 7e-4; most of what is stated is of the section's points.
+    """
     mesh = {"section": {"radial": 4, "angular": 12}}
     spring = {"wire_diameter": WIRE, "mean_diameter": 30.0, "turns": 2.5, "pitch": PITCH}
     entries = {"spring": spring, "material": "ck15", "accuracy": "50 %", "heads": {"top": {"sideways": "free"}}}
@@ -119,7 +122,7 @@ def test_torque_rotation_and_set_have_the_meshs_error(to):
     size, error = ("turn_max_deg", "turn_error_deg") if given else ("torque_max_Nmm", "torque_error_Nmm")
     for name, stated in ((size, error), ("turn_set_deg", "turn_set_error_deg")):
         true = abs(coarse[name] - fine[name])
-        assert 1e-4 * abs(fine[name]) < true < coarse[f"estimated_{stated}"] < 12.0 * true
+        assert true < coarse[f"estimated_{stated}"] < 0.03 * abs(fine[name])
         assert fine[f"estimated_{stated}"] is None
     asked = replace(run.setup, limits=replace(run.setup.limits, accuracy=1e-4))
     (warning,) = (one for one in run_warnings(asked, run.result) if one.name == "error")

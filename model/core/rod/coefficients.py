@@ -11,12 +11,17 @@ class Coefficients:
     Args:
         element: Element.
         timoshenko_factor: of the owned cells, shape (cells,), see coilset.model.core.rod.forms.section_strains.
+        l0: chord lengths in the stress-free state, shape (cells,), mm.
 
     Attributes:
         xi: abscissae of the sections, shape (cells, sections).
         timoshenko_factor: shape (cells,).
+        l0, l: chord lengths in the stress-free state and now, shape (cells,), mm.
+        reference: that of the two which twist, curvatures and work refer to, see Element.
         E: triads of the elements (columns), shape (cells, 3, 3).
         T, P: of the nodes' rotations, shape (cells, 2, 3, 3).
+        theta: rotation vectors of the nodes against the triads, shape (cells, 2, 3).
+        factors: of P, mean: of the elements; see Triads.
         W: for the triads' spin about their chords, shape (cells, 3, 3).
         e: section strains, shape (cells, sections, 6).
         s: section forces, shape (cells, sections, 6), N and N mm.
@@ -24,9 +29,13 @@ class Coefficients:
         D: section tangents ∂s/∂e, shape (cells, sections, 6, 6).
     """
 
-    def __init__(self, element: Element, timoshenko_factor: np.ndarray) -> None:
+    def __init__(self, element: Element, timoshenko_factor: np.ndarray, l0: np.ndarray) -> None:
         cells, sections = len(timoshenko_factor), len(element.abscissae)
         self.xi, self.timoshenko_factor = np.tile(element.xi, (cells, 1)), timoshenko_factor
+        self.l0, self.l = l0, l0.copy()
+        self.reference = self.l if element.small_rotations else self.l0
+        self.theta, self.mean = (np.zeros((cells, 2, 3)) for _ in range(2))
+        self.factors = np.zeros((cells, 2, 2))
         self.E, self.W = (np.zeros((cells, 3, 3)) for _ in range(2))
         self.T, self.P = (np.zeros((cells, 2, 3, 3)) for _ in range(2))
         self.e, self.s, self.predicted = (np.zeros((cells, sections, 6)) for _ in range(3))

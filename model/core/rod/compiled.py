@@ -127,7 +127,7 @@ def _loaded(residual: Compiled, tangent: Compiled, element: Element) -> Compiled
 
 def _compile(comm: MPI.Comm, element: Element) -> tuple[Compiled, Compiled]:
     mesh = ufl.Mesh(basix.ufl.element("Lagrange", "interval", 1, shape=(3,)))
-    V = ufl.FunctionSpace(mesh, forms.rod_element(element))
+    V = ufl.FunctionSpace(mesh, forms.cell_element((element.unknowns,)))
     spaces = {name: ufl.FunctionSpace(mesh, one) for name, one in forms.field_elements(element).items()}
     fields = {name: ufl.Coefficient(space) for name, space in spaces.items()}
     rod, names = forms.RodForms(element, mesh, V, **fields), {field: name for name, field in fields.items()}
@@ -138,4 +138,4 @@ def _compile(comm: MPI.Comm, element: Element) -> tuple[Compiled, Compiled]:
         used = tuple(names[form.coefficients()[place]] for place in places)
         return Compiled(str(element_kernel.make(comm, made)), used)
 
-    return compiled(rod.residual), compiled(rod.material_stiffness + rod.frame_stiffness)
+    return compiled(rod.residual), compiled(rod.tangent)

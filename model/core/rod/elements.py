@@ -45,12 +45,16 @@ class Element:
         name: in a case.
         abscissae, weights: ξ = x/l of its sections, and their weights, whose sum is 1.
         modes: the section strain, 0 to 5, and the degree of each mode.
+        small_rotations: whether its virtual strains are those of small rotations, and its twist, curvatures and work
+            refer to the current length, as in the thesis. Else these are the variation of its strains, and refer to
+            the stress-free length.
     """
 
     name: str
     abscissae: tuple[float, ...]
     weights: tuple[float, ...]
     modes: tuple[tuple[int, int], ...] = ()
+    small_rotations: bool = False
 
     @property
     def own(self) -> int:
@@ -81,7 +85,7 @@ def legendre(degree: int, xi: Any) -> Any:
 
 
 _HALF = 0.5 / 3.0**0.5
-THESIS = Element("thesis", (0.5 - _HALF, 0.5 + _HALF), (0.5, 0.5))  # (5.2.42)
+THESIS = Element("thesis", (0.5 - _HALF, 0.5 + _HALF), (0.5, 0.5), small_rotations=True)  # (5.2.42)
 MIXED = Element(
     "mixed",
     (0.0, 0.5, 1.0),

@@ -1,11 +1,13 @@
-"""The rod's updated-Lagrangian virtual work as UFL forms on the current configuration (4.3.4, Tables 5.1 and 5.2).
+"""The rod's virtual work as UFL forms: the variation of the strains that its sections see, and its derivative.
 
-Every form is linear in the increments about the current mesh. Inside a cell the nodal values of a P1 function are
-f1 = f − ξ d and f2 = f1 + d with d = f,ξ; ξ is a quadrature coefficient. Rotations enter through their chart: the
-virtual rotation of node a is ω = Ta ψ, so that the residual is that of the chart: PETSc adds updates, and finite
-rotations do not add.
+The rod of the program has internal forces ∫ s · δe dx₀ over the stress-free length, with the variation δe of the very
+strains that its sections see (`kinematics.section_strains`), so that an elastic rod has a potential. The thesis's
+element takes the strains of small rotations, (4.3.4) and Table 5.2, on the current length. The unknowns are increments
+about the current configuration. Rotations enter through their chart: the virtual rotation of node a is ω = Ta ψ, so
+that the residual is that of the chart: PETSc adds updates, and finite rotations do not add.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any
@@ -15,19 +17,10 @@ import numpy as np
 import ufl
 from dolfinx import fem
 from dolfinx import mesh as dmesh
-from ufl import as_matrix, as_vector, cross, dot, grad, inner, sqrt
 
-from coilset.model.core.rod.elements import PER_LENGTH, Element, legendre
+from coilset.model.core.rod.elements import PER_LENGTH, STRAINS, Element, legendre
 
-
-@dataclass
-class Increment:
-    """A linear increment of one element in the global frame: chord difference, nodal rotations, own unknowns."""
-
-    d: ufl.core.expr.Expr
-    rotation1: ufl.core.expr.Expr
-    rotation2: ufl.core.expr.Expr
-    own: ufl.core.expr.Expr
+LOCAL = 9  # values of a chord difference and two spins
 
 
 @cache
@@ -63,10 +56,13 @@ def cell_element(shape: tuple[int, ...]) -> Any:
 FIELDS: dict[str, partial[Any]] = {
     "xi": partial(section_element, ()),
     "timoshenko_factor": partial(cell_element, ()),
+    "l0": partial(cell_element, ()),
+    "l": partial(cell_element, ()),
     "E": partial(cell_element, (3, 3)),
     "T": partial(cell_element, (2, 3, 3)),
-    "P": partial(cell_element, (2, 3, 3)),
-    "W": partial(cell_element, (3, 3)),
+    "theta": partial(cell_element, (2, 3)),
+    "factors": partial(cell_element, (2, 2)),
+    "mean": partial(cell_element, (2, 3)),
     "e": partial(section_element, (6,)),
     "s": partial(section_element, (6,)),
     "predicted": partial(section_element, (6,)),
@@ -79,94 +75,80 @@ def field_elements(element: Element) -> dict[str, Any]:
     return {name: make(element=element) if make.func is section_element else make() for name, make in FIELDS.items()}
 
 
-def matrices(coefficient: Any) -> list[Any]:
-    """The two 3×3 matrices of a coefficient of shape (2, 3, 3)."""
-    return [as_matrix([[coefficient[a, i, j] for j in range(3)] for i in range(3)]) for a in range(2)]
+Vector = Sequence[Any]  # of scalar expressions and numbers: FFCx needs minutes for tensors with so many components
 
 
-def increment(mesh: dmesh.Mesh, function: Any, xi: Any, T: Any) -> Increment:
-    """The increment of a test or trial function; `T` holds the charts' tangents of the two nodes, shape (2, 3, 3)."""
-    f, own = ufl.split(function)
-    d = dot(grad(f), ufl.Jacobian(mesh)[:, 0])  # f,ξ
-    f1 = f - xi * d
-    f2 = f1 + d
-    chart1, chart2 = matrices(T)
-    return Increment(
-        as_vector([d[i] for i in range(3)]),
-        chart1 * as_vector([f1[i] for i in range(3, 6)]),
-        chart2 * as_vector([f2[i] for i in range(3, 6)]),
-        own,
-    )
+def dot(a: Vector, b: Vector) -> Any:
+    """a · b."""
+    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
-def section_strains(
-    increment: Increment,
-    element: Element,
-    E: Any,
-    l: Any,
-    xi: Any,
-    timoshenko_factor: Any,
-    P: Any = None,
-    spin: Any = 0,
-) -> Any:
-    """ε, γ12, γ13, φ′, −w″, v″ of an increment in the triad E (columns), from (5.2.4).
+def cross(a: Vector, b: Vector) -> Vector:
+    """a × b."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
-    Rotations are relative to the triad, whose transverse spin is the chord's and whose spin about the chord is `spin`.
-    `P`, shape (2, 3, 3), maps the relative spins to the exact rates of the rotations; without it the rotations are
-    small, as in the thesis.
 
-    The first two of the element's own unknowns are the shear angles in excess of those that its rotations produce in
-    an elastic element, u = shear − c ½ (t1 + t2) with Timoshenko's c, `timoshenko_factor` (docs/theory/element.md says
-    why). The chord's curve is H1 … H4 with the same bow b = u + ½ (t1 + t2) at both ends and ±(t2 − t1)/2 besides. The
-    others are the modes of its strains, see coilset.model.core.rod.elements.
+def plus(a: Vector, b: Vector, factor: Any = 1) -> Vector:
+    """a + factor b."""
+    return tuple(x + factor * y for x, y in zip(a, b, strict=True))
+
+
+@dataclass
+class Increment:
+    """A local increment of one element, in its triad: chord difference, spins of its nodes, own unknowns."""
+
+    d: Vector
+    spins: tuple[Vector, Vector]
+    own: Vector
+
+    @classmethod
+    def unit(cls, number: int, element: Element) -> "Increment":
+        """With one value 1 and all others 0, in the order of the unknowns."""
+        values = [float(k == number) for k in range(LOCAL + element.own)]
+        return cls(values[0:3], (values[3:6], values[6:9]), values[LOCAL:])
+
+
+class State:
+    """What the virtual strains of an element depend on, in its triad.
+
+    Args:
+        l, theta, factors, mean: as in RodForms.
+
+    Attributes:
+        variables: its numbers one after the other, by which expressions can be differentiated.
     """
-    d = E.T * increment.d
-    frame = as_vector([spin, -d[2] / l, d[1] / l])
-    t1, t2 = E.T * increment.rotation1 - frame, E.T * increment.rotation2 - frame
-    if P is not None:
-        P1, P2 = matrices(P)
-        t1, t2 = P1 * t1, P2 * t2
-    m13, m14 = (t1[1] + t2[1]) / 2, (t1[2] + t2[2]) / 2
-    u13, u14 = increment.own[0] - timoshenko_factor * m13, increment.own[1] - timoshenko_factor * m14
-    b13, b14 = u13 + m13, u14 + m14
-    H = (12 * xi - 6) / l  # H2″ + H4″, times l
-    e = [d[0] / l, u14, -u13, (t2[0] - t1[0]) / l, (t2[1] - t1[1]) / l + H * b13, (t2[2] - t1[2]) / l + H * b14]
-    for k, (strain, degree) in enumerate(element.modes):
-        mode = legendre(degree, xi) * increment.own[2 + k]
-        e[strain] += mode / l if strain >= PER_LENGTH else mode
-    return as_vector(e)
 
-
-def axial_spin(increment: Increment, W: Any) -> Any:
-    """Spin of the element's triad about its chord; `W`, shape (3, 3), from `kinematics.mean_triad`."""
-    return sum(dot(W[k, :], rate) for k, rate in enumerate((increment.d, increment.rotation1, increment.rotation2)))
-
-
-def spun(increment: Increment, spin: Any) -> Increment:
-    """The virtual increment as it appears from a spinning triad: δu → −spin × δu in the fixed frame."""
-    d, rotation1, rotation2 = (-cross(spin, v) for v in (increment.d, increment.rotation1, increment.rotation2))
-    return Increment(d, rotation1, rotation2, 0 * increment.own)
+    def __init__(self, l: Any, theta: Any, factors: Any, mean: Any) -> None:
+        self.l = ufl.variable(l)
+        self.theta, self.mean = ([[ufl.variable(v[a, i]) for i in range(3)] for a in range(2)] for v in (theta, mean))
+        self.c, self.c_rate = [ufl.variable(factors[a, 0]) for a in range(2)], [factors[a, 1] for a in range(2)]
+        self.variables = [self.l, *self.theta[0], *self.theta[1], *self.c, *self.mean[0], *self.mean[1]]
 
 
 class RodForms:
-    """Residual and tangents of the rod.
+    """Residual and tangent of the rod.
+
+    Both are set up in the triad of an element, in which its strains depend on few numbers, and are turned to its
+    unknowns q by the local increments R q that these make: Rᵀ g and Rᵀ K R.
 
     Args:
         element: Element.
-        mesh: the current configuration.
-        V: space of rod_element.
+        mesh: line mesh of the rod.
+        V: space of the unknowns of an element, cell_element((unknowns,)).
         xi: abscissa ξ of the sections.
-        timoshenko_factor: c of section_strains, one value per element.
+        timoshenko_factor: c of `strains`, one value per element.
+        l0, l: length of the chord in the stress-free state and now.
         E: triad of the element (columns), shape (3, 3).
         T: tangents of the rotation charts of both nodes, shape (2, 3, 3).
-        P: rates of the rotations for a relative spin, shape (2, 3, 3), see section_strains.
-        W: for the triad's spin about its chord, shape (3, 3), see coilset.model.core.rod.kinematics.mean_triad.
+        theta: rotation vectors θ of the nodes against the triad, shape (2, 3).
+        factors: of each θ, c and ζ of coilset.model.core.rotations.kernels.inverse_chart_tangent, shape (2, 2).
+        mean: t and p of the nodes' mean triad, shape (2, 3), see coilset.model.core.rod.kinematics.mean_triad.
         e: section strains ε, γ12, γ13, φ′, −w″, v″.
         s: section resultants N, Q2, Q3 in N and Mt, M2, M3 in N mm.
-        predicted: section resultants that the frame stiffness is built with, see coilset.model.core.rod.prediction.
+        predicted: section resultants that the geometric stiffness is built with, see coilset.model.core.rod.prediction.
         D: section tangent ∂s/∂e, shape (6, 6).
 
-    All are coefficients in the mesh's quadrature or cell spaces.
+    All but the first three are coefficients in the mesh's quadrature or cell spaces.
     """
 
     def __init__(
@@ -176,56 +158,127 @@ class RodForms:
         V: fem.FunctionSpace,
         xi: Any,
         timoshenko_factor: Any,
+        l0: Any,
+        l: Any,
         E: Any,
         T: Any,
-        P: Any,
-        W: Any,
+        theta: Any,
+        factors: Any,
+        mean: Any,
         e: Any,
         s: Any,
         predicted: Any,
         D: Any,
     ) -> None:
-        self.test = increment(mesh, ufl.TestFunction(V), xi, T)
-        self.trial = increment(mesh, ufl.TrialFunction(V), xi, T)
-        J = ufl.Jacobian(mesh)[:, 0]
-        self.element, self.xi, self.timoshenko_factor, self.E, self.P = element, xi, timoshenko_factor, E, P
-        self.e, self.s, self.predicted, self.D = e, s, predicted, D
-        self.l = sqrt(dot(J, J))
-        self.stretch = dot(E[:, 0], self.trial.d) / self.l
-        self.spin = axial_spin(self.trial, W)
+        self.element, self.V, self.xi, self.timoshenko_factor = element, V, xi, timoshenko_factor
+        self.E, self.T, self.e, self.s, self.predicted, self.D = E, T, e, s, predicted, D
+        self.state = State(l, theta, factors, mean)
+        J = [ufl.Jacobian(mesh)[i, 0] for i in range(3)]
+        self.length = self.state.l if element.small_rotations else l0  # to which twist and curvatures refer, too
+        self.per_mesh = 1 / ufl.sqrt(dot(J, J))  # FFCx multiplies by the length in the mesh
         self.dx = ufl.dx(domain=mesh, metadata=at_sections(element))
-
-    def strains(self, increment: Increment) -> Any:
-        """Section strains of an increment in the current triad, for small rotations relative to it."""
-        return section_strains(increment, self.element, self.E, self.l, self.xi, self.timoshenko_factor)
+        self.units = [Increment.unit(k, element) for k in range(LOCAL + element.own)]
 
     @property
     def residual(self) -> Any:
-        """∫ ¹σ : δΔE_l, the internal nodal forces (4.4.1)."""
-        return inner(self.s, self.strains(self.test)) * self.dx
+        """The internal nodal forces (4.4.1)."""
+        return dot(self._local(ufl.TestFunction(self.V)), self._works(self.s)) * self.dx
 
     @property
-    def material_stiffness(self) -> Any:
-        """K_l = ∫ δe · D Δe."""
-        rates = section_strains(
-            self.trial, self.element, self.E, self.l, self.xi, self.timoshenko_factor, self.P, self.spin
-        )
-        curvature = as_vector([0, 0, 0, self.e[3], self.e[4], self.e[5]])  # falls as the chord grows
-        return inner(self.strains(self.test), self.D * (rates - self.stretch * curvature)) * self.dx
+    def tangent(self) -> Any:
+        """Derivative of the residual, if the predicted resultants are the true ones, with the charts held.
 
-    @property
-    def frame_stiffness(self) -> Any:
-        """Change of the internal forces as the element's triad rotates and its chord changes length under the forces.
-
-        With K_l it is the derivative of the residual if the predicted resultants are the true ones, except for the
-        charts' curvature, which is proportional to the out-of-balance moments.
+        The charts' curvature is left out: it is proportional to the out-of-balance moments.
         """
-        e1 = self.E[:, 0]
-        rotated = spun(self.test, cross(e1, self.trial.d) / self.l + self.spin * e1)
-        # l δe by the length l: rotations and own unknowns enter it in ε and γ with l, the chord in w″, v″ with 1/l
-        test, nothing = self.test, 0 * self.test.d
-        still = self.strains(Increment(nothing, test.rotation1, test.rotation2, test.own))
-        moved = self.strains(Increment(test.d, nothing, nothing, 0 * test.own))
-        s = self.predicted
-        lengthened = sum(s[k] * still[k] for k in (0, 1, 2)) - sum(s[k] * moved[k] for k in (4, 5))
-        return (inner(s, self.strains(rotated)) + self.stretch * lengthened) * self.dx
+        test, trial = self._local(ufl.TestFunction(self.V)), self._local(ufl.TrialFunction(self.V))
+        return dot(test, [dot(row, trial) for row in zip(*self._stiffness_columns(), strict=True)]) * self.dx
+
+    def _local(self, function: Any) -> Vector:
+        """R q: in the triad, of displacements and rotation vectors of both nodes, and of the element's own unknowns."""
+        u1, turn1, u2, turn2 = ([function[first + i] for i in range(3)] for first in (0, 3, 6, 9))
+        spin1, spin2 = (
+            [dot([self.T[a, i, j] for j in range(3)], turn) for i in range(3)] for a, turn in enumerate((turn1, turn2))
+        )
+        of_nodes = [
+            dot([self.E[j, i] for j in range(3)], v) for v in (plus(u2, u1, -1), spin1, spin2) for i in range(3)
+        ]
+        return of_nodes + [function[12 + k] for k in range(self.element.own)]
+
+    def _works(self, s: Any) -> Vector:
+        """g: what section resultants do on the virtual strains of each local increment."""
+        length = self.length * self.per_mesh
+        return [dot([s[k] for k in range(STRAINS)], self.virtual_strains(unit)) * length for unit in self.units]
+
+    def _stiffness_columns(self) -> Iterator[Vector]:
+        """K: changes of g by the section resultants, by the state of the element, and as its triad turns."""
+        g = self._works(self.predicted)
+        slopes = [[ufl.diff(work, x) for x in self.state.variables] for work in g]
+        for unit in self.units:
+            strains, rates, spin = self.variation(unit), self._rates(unit), self._spin(unit)
+            stressed = self._works([dot([self.D[k, m] for m in range(STRAINS)], strains) for k in range(STRAINS)])
+            turned = [v for first in range(0, LOCAL, 3) for v in cross(spin, g[first : first + 3])]  # g · (−Ω × d), …
+            turned += [0] * self.element.own
+            yield [a + dot(slope, rates) + b for a, slope, b in zip(stressed, slopes, turned, strict=True)]
+
+    def virtual_strains(self, increment: Increment) -> Vector:
+        """δe: the variation of the strains, or in the thesis that for small rotations."""
+        if not self.element.small_rotations:
+            return self.variation(increment)
+        frame = 0, *self._spin(increment)[1:]
+        return self.strains(increment, *(plus(spin, frame, -1) for spin in increment.spins))
+
+    def variation(self, increment: Increment) -> Vector:
+        """Of the section strains by an increment: the derivative of `kinematics.section_strains`."""
+        found = self.strains(increment, *self._relative(increment))
+        if not self.element.small_rotations:
+            return found
+        angles = 0, 0, 0, *(self.e[k] for k in range(PER_LENGTH, STRAINS))  # fall as the chord grows
+        return plus(found, angles, -increment.d[0] / self.state.l)
+
+    def strains(self, increment: Increment, t1: Vector, t2: Vector) -> Vector:
+        """ε, γ12, γ13, φ′, −w″, v″ from (5.2.4), with the nodes' rotations relative to the triad.
+
+        The first two of the element's own unknowns are the shear angles in excess of those that its rotations produce
+        in an elastic element, u = shear − c ½ (t1 + t2) with Timoshenko's c, `timoshenko_factor`
+        (docs/theory/element.md says why). The chord's curve is H1 … H4 with the same bow b = u + ½ (t1 + t2) at both
+        ends and ±(t2 − t1)/2 besides. The others are the modes of its strains, see coilset.model.core.rod.elements.
+        """
+        l, own = self.length, increment.own
+        m13, m14 = (t1[1] + t2[1]) / 2, (t1[2] + t2[2]) / 2
+        u13, u14 = own[0] - self.timoshenko_factor * m13, own[1] - self.timoshenko_factor * m14
+        b13, b14 = u13 + m13, u14 + m14
+        H = (12 * self.xi - 6) / l  # H2″ + H4″, times l
+        e = [increment.d[0] / self.state.l, u14, -u13, *((b - a) / l for a, b in zip(t1, t2, strict=True))]
+        e[4], e[5] = e[4] + H * b13, e[5] + H * b14
+        for k, (strain, degree) in enumerate(self.element.modes):
+            mode = legendre(degree, self.xi) * own[2 + k]
+            e[strain] += mode / l if strain >= PER_LENGTH else mode
+        return e
+
+    def _relative(self, increment: Increment) -> tuple[Vector, Vector]:
+        """Rates of both θ: by the nodes' spins relative to the triad's, θ̇ = P ω, P = 1 − ½ [θ] + c [θ]²."""
+        triad, found = self._spin(increment), []
+        for spin, theta, c in zip(increment.spins, self.state.theta, self.state.c, strict=True):
+            relative = plus(spin, triad, -1)
+            turned = cross(theta, relative)
+            found.append(plus(plus(relative, turned, -0.5), cross(theta, turned), c))
+        return found[0], found[1]
+
+    def _spin(self, increment: Increment) -> Vector:
+        """Of the element's triad, see coilset.model.core.rod.kinematics.mean_triad."""
+        (t, p), d, (first, second), l = self.state.mean, increment.d, increment.spins, self.state.l
+        w = 1, t[1] / (1 + t[0]), t[2] / (1 + t[0])
+        nodes = plus(plus(first, second), cross(p, plus(second, first, -1)), -1)
+        return (w[1] * d[2] - w[2] * d[1]) / l + dot(w, nodes) / 2, -d[2] / l, d[1] / l
+
+    def _rates(self, increment: Increment) -> Vector:
+        """Of the state's variables."""
+        state, (t, p) = self.state, self.state.mean
+        triad, theta = self._spin(increment), self._relative(increment)
+        both, apart = plus(*increment.spins), plus(increment.spins[1], increment.spins[0], -1)
+        both = plus(both, triad, -2)
+        t_rate = cross(plus(both, cross(p, apart), -1), t)
+        p_rate = plus(plus(cross(both, p), apart, (1 - dot(p, p)) / 2), p, dot(p, apart))
+        mean = [x / 2 for x in (*t_rate, *p_rate)]
+        c = [state.c_rate[a] * dot(state.theta[a], theta[a]) for a in range(2)]
+        return [increment.d[0], *theta[0], *theta[1], *c, *mean]

@@ -55,11 +55,24 @@ class Triads(NamedTuple):
         E: triads (columns), shape (cells, 3, 3).
         P: rate of the nodes' rotations θ against the triad for a relative spin, shape (cells, 2, 3, 3).
         W: what makes the triad's spin about its chord, see mean_triad, shape (cells, 3, 3).
+        mean: t and tan(φ/4) n of mean_triad, in the triad, shape (cells, 2, 3).
+        theta: the nodes' rotations θ against the triad, shape (cells, 2, 3).
+        factors: of P, see coilset.model.core.rotations.kernels.inverse_chart_tangent, shape (cells, 2, 2).
+        l: chord lengths, shape (cells,), mm.
     """
 
     E: np.ndarray
     P: np.ndarray
     W: np.ndarray
+    mean: np.ndarray
+    theta: np.ndarray
+    factors: np.ndarray
+    l: np.ndarray
+
+    @classmethod
+    def of(cls, coefficients: object) -> "Triads":
+        """Those among the arrays of Coefficients."""
+        return cls(*(getattr(coefficients, name) for name in cls._fields))
 
 
 @njit(cache=True)
@@ -113,9 +126,9 @@ def mean_triad(
     l: float,
     E: np.ndarray,
     W: np.ndarray,
+    mean: np.ndarray,
     A: np.ndarray,
     B: np.ndarray,
-    v: np.ndarray,
 ) -> None:
     """Write into `E` the element's triad: the mean of the two rotated node triads, rotated onto the chord (5.2.11).
 
@@ -128,15 +141,16 @@ def mean_triad(
     ½ tan(φ/4) n × (ω2 − ω1), and the smallest rotation from t to c is the rotation by π about t followed by that about
     t + c.
 
-    A, B are 3×3 and v is a 3-vector of work space.
+    t and tan(φ/4) n, in the triad, are written into `mean`; A and B are 3×3 matrices of work space.
     """
+    v, p = mean[0], mean[1]
     multiply_transposed(R1, R2, A)
     logarithm(A, v)
     angle2 = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
     angle = math.sqrt(angle2)
     quarter = 0.25 + angle2 / 192.0 if angle < 1e-3 else math.tan(0.25 * angle) / angle  # tan(φ/4)/φ
     for k in range(3):
-        W[2, k] = quarter * (R1[k, 0] * v[0] + R1[k, 1] * v[1] + R1[k, 2] * v[2])  # tan(φ/4) n
+        p[k] = quarter * (R1[k, 0] * v[0] + R1[k, 1] * v[1] + R1[k, 2] * v[2])  # tan(φ/4) n
     for i in range(3):
         v[i] *= 0.5
     exponential(v, A)
@@ -153,9 +167,13 @@ def mean_triad(
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         W[0, i] = (chord[j] * A[k, 0] - chord[k] * A[j, 0]) / (l * (1.0 + cosine))
-        W[1, i] = 0.5 * (v[i] + v[j] * W[2, k] - v[k] * W[2, j])
+        W[1, i] = 0.5 * (v[i] + v[j] * p[k] - v[k] * p[j])
     for i in range(3):
         W[2, i] = v[i] - W[1, i]
+    x, y, z = p[0], p[1], p[2]
+    for i in range(3):
+        v[i] = E[0, i] * A[0, 0] + E[1, i] * A[1, 0] + E[2, i] * A[2, 0]
+        p[i] = E[0, i] * x + E[1, i] * y + E[2, i] * z
 
 
 @njit(cache=True)
@@ -165,6 +183,7 @@ def section_strains(
     unloaded: StressFree,
     sections: AtSections,
     triads: Triads,
+    reference: np.ndarray,
     e: np.ndarray,
 ) -> None:
     """Strains of all elements at their sections, from (5.2.4) in the element's moving triad.
@@ -178,12 +197,13 @@ def section_strains(
         unloaded: the stress-free state.
         sections: of the Element.
         triads: written.
+        reference: lengths that twist and curvatures refer to, shape (cells,), mm: the triads' or the stress-free ones.
         e: written, ε, γ12, γ13, φ′, −w″, v″ of the chord axis, shape (cells, sections, 6); ε is logarithmic.
     """
     _, R, chords, own = trial
     E0, l0, timoshenko_factor = unloaded
     xi, mode_strains, mode_values = sections
-    E, P, W = triads
+    E, P, W, mean, theta, factors, lengths = triads
     chord = np.empty(3)
     A = np.empty((3, 3))
     B = np.empty((3, 3))
@@ -196,17 +216,20 @@ def section_strains(
         l = math.sqrt(chord[0] ** 2 + chord[1] ** 2 + chord[2] ** 2)
         for k in range(3):
             chord[k] /= l
-        mean_triad(R[i], R[j], E0[c], chord, l, E[c], W[c], A, B, t1)
+        lengths[c] = l
+        mean_triad(R[i], R[j], E0[c], chord, l, E[c], W[c], mean[c], A, B)
         for a, node, t in ((0, i, t1), (1, j, t2)):  # θ = log(Eᵀ R E0)
             multiply_transposed(E[c], R[node], A)
             multiply(A, E0[c], B)
             logarithm(B, t)
-            inverse_chart_tangent(t, P[c, a])
+            inverse_chart_tangent(t, P[c, a], factors[c, a])
+            theta[c, a] = t
+        stretch, l = math.log(l / l0[c]), reference[c]
         m13, m14 = 0.5 * (t1[1] + t2[1]), 0.5 * (t1[2] + t2[2])
         u13, u14 = own[c, 0] - timoshenko_factor[c] * m13, own[c, 1] - timoshenko_factor[c] * m14
         for g in range(len(xi)):
             H = 12.0 * xi[g] - 6.0  # H2″ + H4″, times l
-            e[c, g, 0] = math.log(l / l0[c])
+            e[c, g, 0] = stretch
             e[c, g, 1] = u14
             e[c, g, 2] = -u13
             e[c, g, 3] = (t2[0] - t1[0]) / l

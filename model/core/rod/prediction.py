@@ -8,13 +8,11 @@ Newton method in geometrically non-linear structural problem discretized via dis
 Methods Appl. Mech. Engrg. 313 (2017). At equilibrium both are the same.
 """
 
-import math
-
 import numpy as np
 
 from coilset.model.core.rod.assembly import blocks
 from coilset.model.core.rod.coefficients import Coefficients
-from coilset.model.core.rod.elements import PER_LENGTH, AtSections, Element
+from coilset.model.core.rod.elements import PER_LENGTH, STRAINS, AtSections, Element
 from coilset.model.core.rod.kinematics import Triads
 from coilset.model.core.rod.numbering import Numbering
 from coilset.model.core.runtime.kernels import njit
@@ -25,7 +23,6 @@ BLOCK = 4096  # cells that are taken together, so that no large arrays are made 
 @njit(cache=True)
 def linear_strains(
     cells: np.ndarray,
-    chords: np.ndarray,
     triads: Triads,
     T: np.ndarray,
     timoshenko_factor: np.ndarray,
@@ -33,26 +30,29 @@ def linear_strains(
     numbering: Numbering,
     increments: np.ndarray,
     sections: AtSections,
+    reference: np.ndarray,
     e: np.ndarray,
 ) -> None:
     """Write B δ, the change of the section strains by increments of first order.
 
     Args:
-        cells, chords: of the Prediction.
+        cells: of the Prediction.
         triads: of the elements.
-        T, timoshenko_factor, strain: Coefficients, the last one of these is `e`.
+        T, timoshenko_factor, strain: Coefficients, the last one of these is `e`, or empty where it does not fall as a
+            chord grows.
         numbering: of the unknowns.
         increments: of the local unknowns, mm and rad.
         sections: of the Element.
+        reference: lengths that twist and curvatures refer to, shape (cells,), mm.
         e: written, ε, γ12, γ13, φ′, −w″, v″ at the sections, shape (cells, sections, 6).
     """
-    E, P, W = triads
+    E, P, W = triads.E, triads.P, triads.W
     u, rotations, own, _ = numbering
     xi, mode_strains, mode_values = sections
     spins, t, frame, d = np.empty((2, 3)), np.empty((2, 3)), np.empty(3), np.empty(3)
     for c in range(len(cells)):
         first, second = cells[c, 0], cells[c, 1]
-        l = math.sqrt(chords[c, 0] ** 2 + chords[c, 1] ** 2 + chords[c, 2] ** 2)
+        l = triads.l[c]
         frame[0] = 0.0
         for i in range(3):
             d[i] = 0.0
@@ -75,7 +75,7 @@ def linear_strains(
                     relative += E[c, i, j] * spins[a, i]
                 for i in range(3):
                     t[a, i] += P[c, a, i, j] * relative
-        stretch = d[0] / l
+        stretch, l = d[0] / l, reference[c]
         for g in range(len(xi)):
             H = 12.0 * xi[g] - 6.0  # H2″ + H4″, times l²
             e[c, g, 0] = stretch
@@ -88,8 +88,9 @@ def linear_strains(
             for k in range(len(mode_strains)):
                 mode = mode_values[g, k] * increments[own[c, 2 + k]]
                 e[c, g, mode_strains[k]] += mode / l if mode_strains[k] >= PER_LENGTH else mode
-            for i in range(3, 6):
-                e[c, g, i] -= stretch * strain[c, g, i]  # a longer chord is bent less
+            if len(strain):
+                for i in range(PER_LENGTH, STRAINS):
+                    e[c, g, i] -= stretch * strain[c, g, i]  # a longer chord is bent less
 
 
 class Prediction:
@@ -97,7 +98,6 @@ class Prediction:
 
     Args:
         cells: node numbers, shape (cells, 2).
-        chords: from node to node, shape (cells, 3), mm, of the trial state.
         coefficients: Coefficients of the trial state.
         numbering: Numbering of the unknowns.
         element: Element.
@@ -110,7 +110,6 @@ class Prediction:
     def __init__(
         self,
         cells: np.ndarray,
-        chords: np.ndarray,
         coefficients: Coefficients,
         numbering: Numbering,
         element: Element,
@@ -119,14 +118,15 @@ class Prediction:
         self._on_trial = c.s, c.e, c.D
         self.forces, self.strain, self.tangent = (np.zeros_like(each) for each in self._on_trial)
         self.change = np.zeros_like(c.s)
-        self._before = cells, chords, Triads(c.E, c.P, c.W), c.T, c.timoshenko_factor, c.e, numbering
-        self._sections = element.at_sections
+        falling = c.e if element.small_rotations else c.e[:0]
+        self._before = cells, Triads.of(c), c.T, c.timoshenko_factor, falling, numbering
+        self._sections = element.at_sections, c.reference
 
     def begin(self, correction: np.ndarray) -> None:
         """Take the trial state, from which a correction of the local unknowns begins, mm and rad."""
         for kept, on_trial in zip((self.forces, self.strain, self.tangent), self._on_trial, strict=True):
             np.copyto(kept, on_trial)
-        linear_strains(*self._before, correction, self._sections, self.change)
+        linear_strains(*self._before, correction, *self._sections, self.change)
 
     def forces_after(self, share: float) -> None:
         """Write s + D B δ after a share of the correction into the predicted forces."""

@@ -112,7 +112,7 @@ class Rod(Body):
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
-        self.coefficients = Coefficients(element, timoshenko_factor(law.E, law.G, self.radius, self.l0))
+        self.coefficients = Coefficients(element, timoshenko_factor(law.E, law.G, self.radius, self.l0), self.l0)
         self._increment = self.increment.x.array
         self.levers: list[Any] = []
         self.arms: dict[int, np.ndarray] = {}
@@ -144,7 +144,7 @@ class Rod(Body):
         start, trial = (Configuration(*(getattr(field, when) for field in fields)) for when in ("equilibrium", "trial"))
         self._of_nodes = numbering, self.cells, start, trial, self.chart, c.T
         unloaded = StressFree(self.E0, self.l0, c.timoshenko_factor)
-        self._of_cells = self.cells, trial, unloaded, self.element.at_sections, Triads(c.E, c.P, c.W), c.e
+        self._of_cells = self.cells, trial, unloaded, self.element.at_sections, Triads.of(c), c.reference, c.e
         self.rest()
 
     def rest(self) -> None:
@@ -237,7 +237,7 @@ class Rod(Body):
     @cached_property
     def _prediction(self) -> Prediction:
         """Made when it is first needed: its arrays then take the memory that the first factors needed for a moment."""
-        return Prediction(self.cells, self._chord.trial, self.coefficients, self.numbering, self.element)
+        return Prediction(self.cells, self.coefficients, self.numbering, self.element)
 
     @cached_property
     def _predicted_residual(self) -> ElementKernel:
@@ -268,6 +268,14 @@ class Rod(Body):
                 lever.keep_force(cells, forces)
                 lever.carry_forces(cells, forces)
             add_element_vectors(forces, self.element_dofs[cells], vector)
+
+    def wrenches_on_first_nodes(self) -> np.ndarray:
+        """Forces and moments of the owned cells on their first nodes, shape (cells, 6), N and N mm."""
+        found = np.empty((len(self.cells), 6))
+        for cells, forces in self._residual():
+            found[cells] = -forces[:, :6]
+        found[:, 3:] = np.linalg.solve(self.coefficients.T[:, 0].swapaxes(1, 2), found[:, 3:, None])[..., 0]
+        return found
 
     @contextmanager
     def judged(self) -> Iterator[None]:

@@ -90,15 +90,22 @@ def chart_tangent(v: np.ndarray, T: np.ndarray) -> None:
 
 
 @njit(cache=True)
-def inverse_chart_tangent(v: np.ndarray, P: np.ndarray) -> None:
-    """Write into `P` the inverse of the chart's tangent: v̇ = P ω, for angles below 2π."""
+def inverse_chart_tangent(v: np.ndarray, P: np.ndarray, factors: np.ndarray) -> None:
+    """Write into `P` the inverse of the chart's tangent: v̇ = P ω, for angles below 2π.
+
+    P = 1 − ½ [v] + c [v]², c = (1 − ½ α cot ½ α)/α² with the angle α = |v|. `factors` gets c, and ζ of its rate
+    ċ = ζ v · v̇, ζ = (¼ − 3 c + c² α²)/α².
+    """
     x, y, z = v[0], v[1], v[2]
     angle2 = x * x + y * y + z * z
-    if angle2 < 1e-4:
-        c = 1.0 / 12.0 + angle2 / 720.0
+    if angle2 < 1e-2:  # series, errors below 1e-15 and 1e-14
+        c = 1.0 / 12.0 + angle2 * (1.0 / 720.0 + angle2 * (1.0 / 30240.0 + angle2 * (1.0 / 1209600.0)))
+        rate = 1.0 / 360.0 + angle2 * (1.0 / 7560.0 + angle2 * (1.0 / 201600.0 + angle2 * (1.0 / 5987520.0)))
     else:
         half = 0.5 * math.sqrt(angle2)
         c = (1.0 - half / math.tan(half)) / angle2
+        rate = (0.25 - 3.0 * c + c * c * angle2) / angle2
+    factors[0], factors[1] = c, rate
     P[0, 0] = 1.0 - c * (y * y + z * z)
     P[0, 1] = c * x * y + 0.5 * z
     P[0, 2] = c * x * z - 0.5 * y

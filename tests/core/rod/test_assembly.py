@@ -42,10 +42,16 @@ def by_dolfinx(rod):
     fields = [fem.Function(fem.functionspace(rod.mesh, one)) for one in elements]
     for function, name in zip(fields, forms.FIELDS, strict=True):
         function.x.array[:] = getattr(rod.coefficients, name).ravel()
-    rod_forms = forms.RodForms(rod.element, rod.mesh, rod.V, *fields)
-    vector = fem.assemble_vector(fem.form(rod_forms.residual)).array
-    matrix = matrix_of(rod, len(vector))
-    assemble_matrix(matrix, fem.form(rod_forms.material_stiffness + rod_forms.frame_stiffness))
+    unknowns = rod.element.unknowns
+    V = fem.functionspace(rod.mesh, forms.cell_element((unknowns,)))  # each element by itself
+    rod_forms = forms.RodForms(rod.element, rod.mesh, V, *fields)
+    vector, dofs = np.zeros(len(rod.increment.x.array)), rod.element_dofs
+    np.add.at(vector, dofs, fem.assemble_vector(fem.form(rod_forms.residual)).array.reshape(-1, unknowns))
+    alone = assemble_matrix(fem.form(rod_forms.tangent))
+    alone.assemble()
+    matrix, places = matrix_of(rod, len(vector)), np.arange(len(dofs) * unknowns, dtype=PETSc.IntType)
+    blocks = np.array([alone.getValues(own, own) for own in places.reshape(-1, unknowns)])
+    matrix.setValuesLocalRCV(dofs, dofs, blocks, addv=PETSc.InsertMode.ADD_VALUES)
     matrix.assemble()
     return vector, matrix
 

@@ -29,7 +29,7 @@ def test_forms_are_built_once(record):
     first, again = forms_of_a_new_process(), forms_of_a_new_process()
     assert len(record[1]) == 1
     assert (again.residual, again.tangent) == (first.residual, first.tangent)
-    assert first.residual.fields == ("xi", "timoshenko_factor", "E", "T", "s")
+    assert first.residual.fields == ("xi", "timoshenko_factor", "l", "E", "T", "s")
 
 
 @pytest.mark.parametrize("damage", ["", "{", "[]", '[{"fields": []}, {}]', "gone"])

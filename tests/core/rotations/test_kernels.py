@@ -62,13 +62,16 @@ def test_chart_tangent_is_the_spin_of_the_exponential(angle):
     """exp(v + h δ) exp(v)ᵀ = exp(h T δ) + O(h²); the difference quotient is good to 1e-9 for h = 1e-5, central."""
     delta, h = np.array([0.3, -0.5, 0.2]), 1e-5
     for v in vectors(angle):
-        T, P = np.empty((3, 3)), np.empty((3, 3))
+        T, P, factors = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 2))
         kernels.chart_tangent(v, T)
-        kernels.inverse_chart_tangent(v, P)
+        kernels.inverse_chart_tangent(v, P, factors[0])
         plus, minus = (Rotation.from_rotvec(v + sign * h * delta) for sign in (1, -1))
         spin = (plus * minus.inv()).as_rotvec() / (2 * h)
         np.testing.assert_allclose(T @ delta, spin, rtol=0, atol=2e-9)
         np.testing.assert_allclose(P @ T, np.eye(3), rtol=0, atol=1e-12)
+        for sign, row in ((1, 1), (-1, 2)):
+            kernels.inverse_chart_tangent(v + sign * h * delta, P, factors[row])
+        np.testing.assert_allclose(factors[0, 1] * (v @ delta), (factors[1, 0] - factors[2, 0]) / (2 * h), atol=2e-9)
 
 
 def test_nodes_are_rotated_by_their_vectors():
