@@ -1,4 +1,4 @@
-"""The structured mesh of a straight wire in gmsh: an O-grid in the disk, extruded in layers."""
+"""The structured mesh of a straight wire in gmsh: an O-grid in the disk, or rings in a tube, extruded in layers."""
 
 from dataclasses import dataclass
 
@@ -10,25 +10,29 @@ from coilset.model.core.base.errors import InputError
 
 @dataclass(frozen=True)
 class SectionGrid:
-    """Elements of a wire's cross-section: a square core in the middle, and rings from there to the surface.
+    """Elements of a wire's cross-section: a square core or a hole in the middle, and rings from there to the surface.
 
     Attributes:
         core: elements along a side of the core; there are 4 · core elements around the surface.
         rings: elements from the core to the surface.
+        hole: its radius over that of the wire; 0 if there is a core.
     """
 
     core: int = 4
     rings: int = 3
+    hole: float = 0.0
 
     def __post_init__(self) -> None:
         """Reject values that do not define a grid."""
         if self.core < 1 or self.rings < 1:
             raise InputError(f"core {self.core} and rings {self.rings} must be at least 1", "grid")
+        if not 0.0 <= self.hole < 1.0:
+            raise InputError(f"hole {self.hole:g} is not possible; give 0, or a part of the wire less than 1", "grid")
 
     @property
     def cells(self) -> int:
         """Quadrilaterals in the cross-section."""
-        return self.core * self.core + 4 * self.core * self.rings
+        return (0 if self.hole else self.core * self.core) + 4 * self.core * self.rings
 
 
 CORE = 0.5  # distance of the core's corners from the centre, over the wire radius
@@ -37,19 +41,19 @@ BULGE = 0.08
 
 
 def gmsh_disk(radius: float, grid: SectionGrid) -> list[int]:
-    """Draw the O-grid of a disk in the plane z = 0 of the current gmsh model.
+    """Draw the grid of a disk or a ring in the plane z = 0 of the current gmsh model.
 
     Args:
         radius: of the wire, mm.
         grid: SectionGrid.
 
     Returns:
-        Tags of the five surfaces, the core first.
+        Tags of the surfaces: the core, if there is one, and the four around it.
     """
     occ, mesh = gmsh.model.occ, gmsh.model.mesh
     angle = np.pi / 4 + np.pi / 2 * np.arange(4)
     ring = [occ.addPoint(radius * np.cos(φ), radius * np.sin(φ), 0) for φ in angle]
-    inner = CORE * radius
+    inner = (grid.hole or CORE) * radius
     core = [occ.addPoint(inner * np.cos(φ), inner * np.sin(φ), 0) for φ in angle]
     half = inner / np.sqrt(2)
     sagitta = 2 * half * BULGE
@@ -61,9 +65,9 @@ def gmsh_disk(radius: float, grid: SectionGrid) -> list[int]:
         arcs.append(occ.addCircleArc(ring[i], centre, ring[j]))
         middle = φ + np.pi / 4
         away = occ.addPoint(-behind * np.cos(middle), -behind * np.sin(middle), 0)
-        sides.append(occ.addCircleArc(core[i], away, core[j]))
+        sides.append(occ.addCircleArc(core[i], centre if grid.hole else away, core[j]))
         rays.append(occ.addLine(core[i], ring[i]))
-    surfaces = [occ.addPlaneSurface([occ.addCurveLoop(sides)])]
+    surfaces = [] if grid.hole else [occ.addPlaneSurface([occ.addCurveLoop(sides)])]
     for i in range(4):
         j = (i + 1) % 4
         surfaces.append(occ.addPlaneSurface([occ.addCurveLoop([rays[i], arcs[i], -rays[j], -sides[i]])]))

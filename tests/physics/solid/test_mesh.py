@@ -38,6 +38,25 @@ def test_volume_and_areas_of_a_coil_section():
     assert np.all(np.log2(errors[0] / errors[1]) > 3.5)
 
 
+@pytest.mark.mpi
+def test_volume_and_areas_of_a_tube():
+    """Its parabolic edges are off by the fourth power of their angle: 5e-5 with 16 around."""
+    d, hole, length, grid = 4.0, 0.6, 10.0, SectionGrid(4, 2, 0.6)
+    wire = straight_wire(d, length, 3, MPI.COMM_WORLD, grid)
+    Configuration(wire.mesh)
+    volume, areas = sizes(wire)
+    head = np.pi * d**2 / 4 * (1 - hole**2)
+    found = [volume, areas["bottom"], areas["top"], areas["surface"]]
+    np.testing.assert_allclose(found, [head * length, head, head, np.pi * d * (1 + hole) * length], rtol=1e-4)
+    assert wire.mesh.topology.index_map(3).size_global == 3 * grid.cells
+
+
+@pytest.mark.parametrize("hole", [-0.1, 1.0])
+def test_a_hole_is_less_than_the_wire(hole):
+    with pytest.raises(InputError, match="less than 1"):
+        SectionGrid(hole=hole)
+
+
 def test_frame_of_the_helix():
     helix = Helix(40.0, 12.0, 360.0)
     s = np.linspace(0, helix.length, 7)
