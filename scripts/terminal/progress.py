@@ -82,7 +82,7 @@ class Lines:
     def step(self, step: Step) -> None:
         """A step has been found."""
         waiting, now = self._left(step), time.monotonic()
-        text = f"step {step.number}, {step.seat_height_mm:.5g} mm, {step.force_N:.5g} N{waiting}"
+        text = f"step {step.number}, {step.seat_height_mm:.5g} mm, {abs(step.force_N):.5g} N{waiting}"
         if self.console.is_terminal and not self.console.quiet:
             self.console.file.write(f"\r\x1b[2K{text[: self.console.width - 1]}")
             self.console.file.flush()
@@ -327,14 +327,14 @@ def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
             continue
         is_length = "length_wanted" in state
         error = state["estimated_error"]
-        force = within(state["force_N"], error if is_length else None, "", 2).strip()
+        force = within(abs(state["force_N"]), error if is_length else None, "", 2).strip()
         length = within(state["length_mm"], None if is_length else error, "", 3).strip()
         numbers = [state[name] for name in ("shear_MPa", "corrected_shear_MPa", "shear_inside_MPa")]
         made.add_row(
             length,
             force,
             with_decimals(state["rate_N_per_mm"], "", 3).strip(),
-            *("-" if number is None else f"{number:.0f}" for number in numbers),
+            *("-" if number is None else f"{abs(number):.0f}" for number in numbers),
             f"{state['shear_inside_turn']:.2f}",
             "-" if state["safety"] is None else f"{state['safety']:.2f}",
         )

@@ -52,6 +52,7 @@ def number(one: Quantity) -> Number:
     return Number(one.words, *(text.replace("-", "−") for text in (one.text, one.remark)))
 
 
+STRESSES = ("shear_MPa", "corrected_shear_MPa", "shear_inside_MPa")  # of a working state
 WORKING_HEADS = (
     "length, mm",
     "force, N",
@@ -123,11 +124,9 @@ def _working(state: Mapping[str, Any]) -> list[str]:
     x, y = (state[f"bottom_centre_{axis}_mm"] for axis in "xy")
     cells = [
         within(state["length_mm"], None if is_length else error, "", 3),
-        within(state["force_N"], error if is_length else None, "", 2),
+        within(abs(state["force_N"]), error if is_length else None, "", 2),
         with_unit(state["rate_N_per_mm"], "", 3, "–"),
-        with_unit(state["shear_MPa"], "", 0, "–"),
-        with_unit(state["corrected_shear_MPa"], "", 0, "–"),
-        with_unit(state["shear_inside_MPa"], "", 0, "–"),
+        *("–" if state[name] is None else with_unit(abs(state[name]), "", 0) for name in STRESSES),
         with_unit(state["shear_inside_turn"], "", 2, "–"),
         with_unit(state["safety"], "", 2, "–"),
         "–" if x is None else f"{x:z.2f}, {y:z.2f}",
