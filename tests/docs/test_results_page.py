@@ -67,5 +67,5 @@ def test_warnings():
     made = re.compile(r"\bWarning\(\s*\"([a-z -]+)\"")
     names = {name for path in MODEL.rglob("*.py") for name in made.findall(path.read_text(encoding="utf-8"))}
     (listed,) = re.findall(r"^Warnings, by name: (.*?)\. They are printed", PAGE, re.MULTILINE | re.DOTALL)
-    assert {"index", "lift-off", "step error"} <= names
+    assert {"lift-off", "step error", "strength"} <= names
     assert set(re.findall("`([^`]+)`", listed)) == names
