@@ -19,6 +19,7 @@ from coilset.model.tools.nest.nest import Pressed, press
 from coilset.model.tools.sheet.from_results import of_steps
 from coilset.scripts.terminal.checks import check_lines
 from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.progress import Lines, step_words
 from coilset.scripts.terminal.target import results_folder
 
 SHOWN = (
@@ -40,16 +41,18 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
     """
     if MPI.COMM_WORLD.rank:
         return  # both springs are run by one process
-    console, wanted = Console(), read_nest(file)
+    lines, wanted = Lines(), read_nest(file)
     folder = results_folder(out, Path(file).stem)
     refuse_results(folder, force)
 
     def report(name: str, step: Step) -> None:
-        console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{step.force_N:z14.3f} N")
+        lines.progress(f"{name}, {step_words(step)}")
 
+    lines.say(f"{Path(file).name}: the outer spring, then the inner one")
     pressed = press(wanted, report, threads or usual(1))
     found = output.write(folder, pressed, force, pictures)
-    _conclude(console, pressed, found, folder)
+    lines.progress_ends()
+    _conclude(lines.console, pressed, found, folder)
 
 
 def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder: Path) -> None:

@@ -49,17 +49,17 @@ class Lines:
     def __init__(self, talks: bool = True) -> None:
         self.console = Console(quiet=not talks)
         self._began, self._from = 0.0, -1.0  # when and where the first step ended; below 0 before
-        self._start = self._said = 0.0  # when the first run began, and progress was last printed
+        self._start = self._said = time.monotonic()  # when the first run began, and progress was last printed
         self._open = False  # whether a line of progress is to be written over
 
     def say(self, text: str) -> None:
         """A line about the run."""
-        self._close()
+        self.progress_ends()
         self.console.say(text)
 
     def warn(self, text: str) -> None:
         """A warning."""
-        self._close()
+        self.progress_ends()
         self.console.warn(text)
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
@@ -81,8 +81,11 @@ class Lines:
 
     def step(self, step: Step) -> None:
         """A step has been found."""
-        waiting, now = self._left(step), time.monotonic()
-        text = f"step {step.number}, {step.seat_height_mm:.5g} mm, {abs(step.force_N):.5g} N{waiting}"
+        self.progress(f"{step_words(step)}{self._left(step)}")
+
+    def progress(self, text: str) -> None:
+        """The line of progress: in place of the one before on a terminal, elsewhere if it is time for another one."""
+        now = time.monotonic()
         if self.console.is_terminal and not self.console.quiet:
             self.console.file.write(f"\r\x1b[2K{text[: self.console.width - 1]}")
             self.console.file.flush()
@@ -91,7 +94,7 @@ class Lines:
             self._said = now
             self.console.print(text, soft_wrap=True)
 
-    def _close(self) -> None:
+    def progress_ends(self) -> None:
         """Remove the line of progress."""
         if self._open:
             self.console.file.write("\r\x1b[2K")
@@ -118,7 +121,7 @@ class Lines:
             self.warn(message)
 
     def _answer(self, summary: Mapping[str, Any], made: "Sequence[Check]") -> None:
-        self._close()
+        self.progress_ends()
         if made:
             from coilset.scripts.terminal.checks import check_lines  # only where their package is
 
@@ -314,6 +317,11 @@ def _pressed(step: "Step | SliceStep") -> str:
 def with_decimals(value: float | None, unit: str, digits: int = 4) -> str:
     """A value with its unit; `none` where the run gave none, as of a spring that was not released."""
     return "none" if value is None else f"{value:z.{digits}f} {unit}"
+
+
+def step_words(step: Step) -> str:
+    """A step in a line of progress."""
+    return f"step {step.number}, {step.seat_height_mm:.5g} mm, {abs(step.force_N):.5g} N"
 
 
 def working_table(states: Sequence[Mapping[str, Any]]) -> Table:
