@@ -33,10 +33,14 @@ CHANGES = {
         "model/physics/time/increment.py",
         "model/core/material/law/file.py",
     ],
-    "a warning": ["model/compose/warnings.py", "model/core/results/told.py", "model/tools/report/warning_words.py"],
+    "a warning": [
+        "model/compose/run_warnings.py",
+        "model/core/results/order_of_warnings.py",
+        "model/tools/report/warning_words.py",
+    ],
     "a figure": [
         "model/tools/figures/panels/panel.py",
-        "model/tools/report/page.py",
+        "model/tools/report/run_page.py",
         "model/tools/figures/pictures.py",
     ],
     "a command": ["scripts/main.py", "scripts/commands/report.py"],
@@ -130,12 +134,16 @@ def lines(*paths: str) -> int:
     return sum((ROOT / path).read_text(encoding="utf-8").count("\n") for path in paths)
 
 
+def sizes() -> dict[str, int]:
+    """Lines of each room."""
+    return {name: lines(*(path for path in sources() if room_of(path) == name)) for name in plan()["rooms"]}
+
+
 def main() -> None:
     """Print the table."""
     run, result = closure(RUN), closure(RESULT)
     core = [path for path in run if floor_of(room_of(path) or "") in (CORE, "compose")]
-    sizes = {name: lines(*(path for path in sources() if room_of(path) == name)) for name in plan()["rooms"]}
-    packages = sorted((size, name) for name, size in sizes.items() if floor_of(name) in PACKAGES)
+    packages = sorted((size, name) for name, size in sizes().items() if floor_of(name) in PACKAGES)
     program = [path for path in sources() if not path.startswith("verification/")]
     opened = {change: lines(*files) for change, files in CHANGES.items()}
     print(f"what one must own to press one spring   {len(run):4d} files {lines(*run):6,d} lines")

@@ -11,6 +11,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 import rooms
 
+from coilset.model.core.base.errors import EXTRAS
+
 ROOT = rooms.ROOT
 
 
@@ -32,6 +34,31 @@ def test_a_room_imports_what_it_names_and_nothing_above_its_floor():
 def test_no_import_is_left_that_the_rooms_forbid():
     """A new one needs a door, see docs/architecture.md."""
     assert rooms.forbidden() == {}
+
+
+def test_a_room_keeps_its_budget_of_lines():
+    sizes = rooms.sizes()
+    over = {name: sizes[name] for name, room in rooms.plan()["rooms"].items() if sizes[name] > room.get("budget", 1e9)}
+    assert over == {}
+    budgets = {name: room["budget"] for name, room in rooms.plan()["rooms"].items() if room["floor"] in rooms.PACKAGES}
+    assert max(budgets.values()) <= 2500
+
+
+def test_a_room_imports_only_libraries_of_the_extras_that_it_states():
+    of = {module: extra for extra, modules in EXTRAS.items() for module in modules}
+    for path, tree in rooms.sources().items():
+        room = rooms.plan()["rooms"][rooms.room_of(path)]
+        found = {of[name] for name in libraries(tree) if name in of}
+        assert room["floor"] == "face" or found <= set(room.get("extras", ())), path
+
+
+def libraries(tree):
+    """Top-level names of all modules that a file imports."""
+    for node in ast.walk(tree):
+        names = [one.name for one in node.names] if isinstance(node, ast.Import) else []
+        if isinstance(node, ast.ImportFrom):
+            names = [node.module or ""]
+        yield from (name.partition(".")[0] for name in names)
 
 
 RUN = """

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.compose.parts import parts
-from coilset.model.compose.warnings import run_warnings
+from coilset.model.compose.run_warnings import run_warnings
 from coilset.model.core.results.files.netcdf import Stack, Variable, write_netcdf
 from coilset.model.core.results.records.labels import plain
 from coilset.model.core.results.records.record import Result, Setup, Snapshot

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from coilset.model.compose.parts import installed
+from coilset.model.compose.run_warnings import step_warnings
 from coilset.model.compose.shape import LeastRise, clearance
-from coilset.model.compose.warnings import step_warnings
 from coilset.model.core.base.agreement import max_of_ranks
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.case.phases import AnyPhase, TimePhase

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.compose.parts import parts
-from coilset.model.compose.warnings import run_warnings
+from coilset.model.compose.run_warnings import run_warnings
 from coilset.model.core.base.package import package
 from coilset.model.core.results.records.closing import closing_entries
 from coilset.model.core.results.records.rates import rates, tension, turning

@@ -11,8 +11,8 @@ from coilset.model.core.results.files.folder import subfolder
 from coilset.model.core.results.files.opened import open_run
 from coilset.model.tools.design.opened import read_design
 from coilset.model.tools.report import design_page, nest_page, sweep_page
-from coilset.model.tools.report.page import write_report
 from coilset.model.tools.report.render import NAME
+from coilset.model.tools.report.run_page import write_report
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.console import Console
 

@@ -194,10 +194,10 @@ def _conclude(plan: Plan, out: Path, options: Options, console: Console) -> int:
     else:  # before xarray and matplotlib, so that memory need not hold both
         of_rods = list(multifidelity.lines(plan, partial(multifidelity.of_parquet, out / "sweep.parquet")))
     from coilset.model.tools.figures.png import write_png  # after the cases: xarray and matplotlib take half a second
+    from coilset.model.tools.findings import capability
+    from coilset.model.tools.findings.figures import FILES, draw
+    from coilset.model.tools.findings.histogram import histogram
     from coilset.model.tools.sweep import dataset
-    from coilset.model.tools.sweep.figures import capability
-    from coilset.model.tools.sweep.figures.figures import FILES, draw
-    from coilset.model.tools.sweep.figures.limits import histogram
 
     data = dataset.collect(plan, out)
     clear(out, ("limits.png", *FILES))

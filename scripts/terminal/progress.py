@@ -17,10 +17,10 @@ from rich.text import Text
 from coilset.model.compose.analysis import Analysis
 from coilset.model.core.case.phases import drives_at
 from coilset.model.core.contact.base import SEAT_DOFS
+from coilset.model.core.results.order_of_warnings import told
 from coilset.model.core.results.quantities import quantities
 from coilset.model.core.results.records.labels import lives_text, within
 from coilset.model.core.results.records.record import ContactRecord, SeatReactions, Step
-from coilset.model.core.results.told import told
 from coilset.scripts.terminal.console import Console, styled, table
 
 if TYPE_CHECKING:  # not where a rod is solved, or without checks

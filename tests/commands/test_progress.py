@@ -7,7 +7,7 @@ import re
 import pytest
 from mpi4py import MPI
 
-from coilset.model.core.results.told import told
+from coilset.model.core.results.order_of_warnings import told
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.progress import Lines, Steps, duration
 

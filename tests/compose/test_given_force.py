@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from coilset.model.compose.run_warnings import allowed_force
 from coilset.model.compose.setup import forces_given
-from coilset.model.compose.warnings import allowed_force
 from coilset.model.core.case import check
 from coilset.model.core.results.records.record import Result, Setup, Step
 

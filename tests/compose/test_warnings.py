@@ -10,8 +10,8 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_warnings import accuracy_warning, run_warnings, step_warnings
 from coilset.model.compose.summary import summarise
-from coilset.model.compose.warnings import accuracy_warning, run_warnings, step_warnings
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.case import read_case
 from coilset.model.core.results import surface

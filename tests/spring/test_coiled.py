@@ -5,8 +5,8 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_warnings import run_warnings
 from coilset.model.compose.summary import summarise
-from coilset.model.compose.warnings import run_warnings
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.case.case import check
 from coilset.model.physics.slice.analysis import SliceAnalysis

@@ -7,8 +7,8 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.compose.analysis import Analysis
+from coilset.model.compose.run_warnings import run_warnings
 from coilset.model.compose.summary import summarise
-from coilset.model.compose.warnings import run_warnings
 from coilset.model.core.base.errors import InputError, SolveError
 from coilset.model.core.case import check
 from coilset.model.core.contact.base import TrialPositions

@@ -16,7 +16,7 @@ from typing import Any
 from coilset.meshes.springs.shapes import Table
 from coilset.model.compose.analysis import Analysis
 from coilset.model.compose.contacts import bedding_of
-from coilset.model.compose.warnings import allowed_errors
+from coilset.model.compose.run_warnings import allowed_errors
 from coilset.model.core.base.errors import SolveError
 from coilset.model.core.case import Case
 from coilset.model.core.results.records.labels import plain

@@ -17,8 +17,8 @@ from coilset.model.tools.figures.panels.characteristic import characteristic
 from coilset.model.tools.figures.panels.panel import Panel, axis, curve
 from coilset.model.tools.figures.panels.spring_view import spring_view
 from coilset.model.tools.report.answer import Number, answer
-from coilset.model.tools.report.page import made_with
 from coilset.model.tools.report.render import write_page
+from coilset.model.tools.report.run_page import made_with
 
 LEAST_OFF = 1e-12  # relative, to which the figure goes down
 FOUND = "found"  # the folder of the results of found.yaml, beside it

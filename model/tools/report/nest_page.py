@@ -24,8 +24,8 @@ from coilset.model.tools.figures.wire_surface import closed, frames, tubes
 from coilset.model.tools.nest.file import NAMES
 from coilset.model.tools.nest.output import STEPS, characteristic
 from coilset.model.tools.report.answer import Number, number
-from coilset.model.tools.report.page import made_with, write_report
 from coilset.model.tools.report.render import NAME, write_page
+from coilset.model.tools.report.run_page import made_with, write_report
 from coilset.model.tools.sheet import from_results
 from coilset.model.tools.sheet.from_results import Found
 

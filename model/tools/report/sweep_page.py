@@ -10,13 +10,13 @@ import xarray as xr
 from coilset.model.core.base.errors import reading
 from coilset.model.core.results.files.labelled import labelled
 from coilset.model.tools.figures.panels.panel import COLOURS, Panel, axis
+from coilset.model.tools.findings import findings
+from coilset.model.tools.findings.capability import capabilities
+from coilset.model.tools.findings.histogram import histogram
+from coilset.model.tools.findings.sensitivity import rank_correlation
 from coilset.model.tools.report.answer import Number
 from coilset.model.tools.report.render import write_page
 from coilset.model.tools.report.warning_words import in_words
-from coilset.model.tools.sweep.figures import findings
-from coilset.model.tools.sweep.figures.capability import capabilities
-from coilset.model.tools.sweep.figures.limits import histogram
-from coilset.model.tools.sweep.figures.sensitivity import rank_correlation
 from coilset.model.tools.sweep.multifidelity import QUANTILES, as_rods, of_response
 
 FILE = "sweep.nc"

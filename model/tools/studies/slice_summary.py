@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from coilset.model.compose.warnings import beyond_validity
+from coilset.model.compose.run_warnings import beyond_validity
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.results.records.summary_entries import UNSEEN
 from coilset.model.physics.slice.analysis import SliceAnalysis, SliceSnapshot

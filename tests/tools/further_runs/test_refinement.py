@@ -8,7 +8,7 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.compose.analysis import Analysis
-from coilset.model.compose.warnings import run_warnings
+from coilset.model.compose.run_warnings import run_warnings
 from coilset.model.core.case import read_case
 from coilset.model.core.results.records.record import Errors, RunErrors
 from coilset.model.tools.further_runs.refinement import left_open, left_out, needed, within_accuracy

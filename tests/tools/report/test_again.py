@@ -6,7 +6,7 @@ from mpi4py import MPI
 from coilset.model.core.case import check, read_case
 from coilset.model.core.material import library
 from coilset.model.core.results.files.opened import open_run
-from coilset.model.tools.report.page import complete
+from coilset.model.tools.report.run_page import complete
 from coilset.scripts.commands.solve import solve
 
 PROGRAM = "loading=[{to: {travel: 2}, steps: 1}]"

@@ -16,7 +16,7 @@ from browser import ENTER, TAB, chromium, missing
 
 from coilset.model.core.results.files.opened import open_run
 from coilset.model.tools.report.design_page import write_design_report
-from coilset.model.tools.report.page import write_report
+from coilset.model.tools.report.run_page import write_report
 from coilset.model.tools.report.sweep_page import write_sweep_report
 from coilset.model.tools.sweep import dataset
 from coilset.model.tools.sweep.journal import Journal

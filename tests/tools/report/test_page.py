@@ -27,8 +27,8 @@ from coilset.model.tools.figures.panels.seats import force_centre
 from coilset.model.tools.figures.series import write_series
 from coilset.model.tools.figures.wire_surface import closed, frames, inside, shear_around, tubes
 from coilset.model.tools.report import design_page
-from coilset.model.tools.report.page import CHAPTERS, write_report
 from coilset.model.tools.report.render import GLOSSARY
+from coilset.model.tools.report.run_page import CHAPTERS, write_report
 from coilset.scripts.commands.report import report
 from coilset.scripts.commands.sheet import Options, sheet
 from coilset.scripts.commands.solve import solve

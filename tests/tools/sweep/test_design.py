@@ -6,8 +6,8 @@ from scipy import stats
 
 from coilset.model.core.base.entry import check_entries
 from coilset.model.core.base.errors import InputError
+from coilset.model.tools.findings.sensitivity import rank_correlation, sobol_indices
 from coilset.model.tools.sweep.design import rows, unit_cube
-from coilset.model.tools.sweep.figures.sensitivity import rank_correlation, sobol_indices
 from coilset.model.tools.sweep.spec import Normal, SweepSpec
 
 

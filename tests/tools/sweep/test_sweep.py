@@ -24,11 +24,11 @@ from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import check
 from coilset.model.core.material.library import FOLDER
 from coilset.model.core.results.records.units import words_and_unit
+from coilset.model.tools.findings.figures import draw
 from coilset.model.tools.sweep import dataset
 from coilset.model.tools.sweep.engines import processes
 from coilset.model.tools.sweep.engines.processes import Workers
 from coilset.model.tools.sweep.evaluate import evaluate
-from coilset.model.tools.sweep.figures.figures import draw
 from coilset.model.tools.sweep.journal import Journal, read_records
 from coilset.model.tools.sweep.plan import Plan
 from coilset.model.tools.sweep.run import finished, missing, run

@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.model.compose.analysis import Analysis
-from coilset.model.compose.warnings import run_warnings
+from coilset.model.compose.run_warnings import run_warnings
 from coilset.model.core.base.errors import SolveError
 from coilset.model.core.base.style import STYLE
 from coilset.model.core.case import check

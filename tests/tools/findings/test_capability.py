@@ -6,9 +6,9 @@ from scipy import stats
 
 from coilset.model.core.case import read_case
 from coilset.model.core.results.records.record import Limit
+from coilset.model.tools.findings.capability import _capability, _controlled, _plain, lines
 from coilset.model.tools.limits.limits import case_limits, judged, limit_warnings
 from coilset.model.tools.standards import en13906, en15800
-from coilset.model.tools.sweep.figures.capability import _capability, _controlled, _plain, lines
 
 LIMIT = Limit("force_at_37_N", 240.0, 260.0, "given")
 

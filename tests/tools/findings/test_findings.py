@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from coilset.model.core.results.records.units import unit_of, words_and_unit
-from coilset.model.tools.sweep.figures import findings
+from coilset.model.tools.findings import findings
 
 
 def cases(values):

@@ -14,9 +14,9 @@ from matplotlib.ticker import NullLocator
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.base.style import STYLE
 from coilset.model.tools.figures.png import add_title, save
+from coilset.model.tools.findings import findings
+from coilset.model.tools.findings.sensitivity import rank_correlation, sobol_indices
 from coilset.model.tools.sweep import spec as sp
-from coilset.model.tools.sweep.figures import findings
-from coilset.model.tools.sweep.figures.sensitivity import rank_correlation, sobol_indices
 from coilset.model.tools.sweep.plan import Plan
 
 LINE_LIMIT = 5000  # curves drawn in a family; of more, an even selection

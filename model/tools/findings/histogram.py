@@ -3,7 +3,7 @@
 import numpy as np
 
 from coilset.model.tools.figures.panels.panel import COLOURS, Panel, axis, upright
-from coilset.model.tools.sweep.figures.capability import Capability
+from coilset.model.tools.findings.capability import Capability
 
 
 def histogram(found: Capability) -> Panel:
