@@ -306,11 +306,12 @@ def test_a_kill_while_it_is_written_leaves_the_page_before(folder, page):
     """The kernel kills the process in the midst of the file; the next page is whole, and removes what lay beside it."""
     path = folder / "report.html"
     path.write_text("the page before")
+    run = open_run(folder)
     child = os.fork()
     if child == 0:
         signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
         resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, resource.RLIM_INFINITY))
-        write_report(open_run(folder))
+        write_report(run)
         os._exit(0)
     assert os.WTERMSIG(os.waitpid(child, 0)[1]) == signal.SIGXFSZ
     assert path.read_text() == "the page before"
