@@ -243,9 +243,13 @@ def _begun(model: Model, G: float) -> tuple[Model, np.ndarray, int]:
     """
     held = [] if model.threshold is None else [model.threshold]
     x = _first(model, G, held)
-    for _ in range(2 + any(one.coiled for one in model.pressings)):
+    coiled = any(one.coiled for one in model.pressings)
+    for _ in range(2 + coiled):
         model = model.corrected(x)
         x, _ = minimum(model, x, held, fine=False)
+    if coiled:  # the end of its release changes by far more than uniform rods show, and would lead the search away
+        model = model.with_slopes(x)
+        x, _ = minimum(model, x)
     if held:
         model = model.with_shares(x, SHARES)
         x, _ = minimum(model, x, fine=False)
