@@ -17,7 +17,7 @@ from coilset.scripts.interrupt import Interrupt
 
 LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
 CACHE = Path(os.environ.get("COILSET_CACHE", Path.home() / ".cache" / "coilset"))
-LONG = ["--no-pictures"] + [
+LONG = ["--steps", "--no-pictures"] + [
     part
     for setting in (
         "mesh.section.rule=abramowitz9",
