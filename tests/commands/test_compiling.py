@@ -202,7 +202,7 @@ def test_the_stages_of_compiling_are_shown(monkeypatch, tmp_path, capfd):
 def test_the_warming_names_each_stage_once(monkeypatch, tmp_path):
     monkeypatch.setattr(precompile, "compiled", lambda stage: tmp_path / stage)
     done, lines = [], []
-    for work in ("_run", "guess", "there_and_back"):
+    for work in ("_run", "_uniform", "_point"):
         monkeypatch.setattr(precompile, work, lambda *_: done.append(len(lines)))
     precompile.warm(report=lines.append)
     assert done == [1, 2, 3, 4]
