@@ -17,7 +17,7 @@ from coilset.model.physics.guides.hold import Guide
 from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import sections
 from coilset.model.tools.standards import en13906
-from coilset.scripts.terminal.progress import Lines
+from coilset.scripts.terminal.progress import Verbose
 from coilset.verification.references.bent_wire import BentWire
 
 WIRE, TURNS, PITCH = 3.0, 5.5, 4.2
@@ -90,8 +90,7 @@ def test_a_spring_that_is_turned_in_vain_has_reached_a_torque(monkeypatch, capsy
     """The message gave the height, and a force of rounding as what can be reached; its steps showed neither."""
     loading = [{"to": {"force": 0, "top": to}, "steps": 4}]
     analysis = Analysis(check(data(to) | {"loading": loading}), MPI.COMM_SELF)
-    solve, lines = analysis.newton.solve, Lines()
-    lines.every = True
+    solve, lines = analysis.newton.solve, Verbose()
 
     def fails_from_half(load, start=None):
         outcome = solve(load, start)

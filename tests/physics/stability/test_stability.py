@@ -160,7 +160,7 @@ def test_critical_travel_is_haringxs(capsys):
     (told,) = (one for one in summary["warnings"] if one["name"] == "buckled")
     assert told["value"] == summary["buckling_travel_mm"]
     assert f"buckled at a travel of {told['value']:.4g} mm" in told["message"]
-    Lines().conclude(summary, Path("out"))
+    Lines().conclude(summary, [], Path("out"))
     printed = " ".join(capsys.readouterr().out.split())
     assert printed.rindex(told["message"]) > printed.index("results in")
 
