@@ -2,10 +2,10 @@
 
 import pytest
 
-from coilset.model.compose import build as room
 from coilset.model.compose.analysis import Analysis
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import read_case
+from coilset.model.physics.accuracy import effort as room
 from coilset.model.physics.accuracy.effort import Effort, machine_memory
 
 
