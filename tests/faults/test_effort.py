@@ -2,10 +2,11 @@
 
 import pytest
 
+from coilset.model.compose import build
 from coilset.model.compose.analysis import Analysis
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.case import read_case
-from coilset.model.physics.accuracy import effort as room
+from coilset.model.physics.accuracy import effort
 from coilset.model.physics.accuracy.effort import Effort, machine_memory
 
 
@@ -32,8 +33,8 @@ def test_more_than_the_memory_is_refused():
     "setting", ["mesh.elements_per_turn=1e6", "mesh.section={radial: 64, angular: 256}", "mesh.sagitta=1e-12"]
 )
 def test_a_mesh_without_measure_is_refused_at_once(example, monkeypatch, setting):
-    monkeypatch.setattr(room, "line_mesh", None)  # nothing is built
-    monkeypatch.setattr(room, "machine_memory", lambda: 2.0**33)
+    monkeypatch.setattr(build, "line_mesh", None)  # nothing is built
+    monkeypatch.setattr(effort, "machine_memory", lambda: 2.0**33)
     with pytest.raises(InputError, match="mesh") as caught:
         Analysis(
             read_case(example, ["mesh.elements_per_turn=2000", setting, "ends=clamped", "loading=[{to: {travel: 1}}]"])
