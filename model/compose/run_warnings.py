@@ -9,10 +9,17 @@ from coilset.model.core.base.warning import Warning
 from coilset.model.core.results import surface
 from coilset.model.core.results.records.closing import VERTICAL, stands_on_wall, steepness
 from coilset.model.core.results.records.labels import CAUSES, NUMBERS, TURNED, apart, listed
-from coilset.model.core.results.records.part import Check, place_of
+from coilset.model.core.results.records.part import WarningsOf, place_of
 from coilset.model.core.results.records.rates import FEW, tensions
 from coilset.model.core.results.records.record import Result, Setup, Snapshot, Step
-from coilset.model.core.results.records.releases import FREE, is_turned, last_release, set_of, turned_radius
+from coilset.model.core.results.records.releases import (
+    FREE,
+    NOTICED,
+    is_turned,
+    last_release,
+    set_of,
+    turned_radius,
+)
 from coilset.model.core.results.records.units import unit_of
 from coilset.model.core.results.stresses import shear_inside
 
@@ -20,7 +27,6 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 WALL_FORCE = 0.002  # of the force, for which the warning states the height where no accuracy is required
 LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
 ROUNDING = 1e-3  # by which a limit that is given with few digits may be exceeded
-NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
 # Of the accuracy for residual stresses: they follow the strains, which converge by an order less than heights, and a
 # diffractometer resolves some MPa.
 STRESS = 5.0
@@ -344,5 +350,5 @@ def _tension(setup: Setup, result: Result) -> Iterator[Warning]:
             yield Warning("initial tension", when, message, held.points, FEW)
 
 
-SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration)
-FOUND: tuple[Check, ...] = (_strength, _creep, _errors, _longer, _tension)
+SEEN: tuple[WarningsOf, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration)
+FOUND: tuple[WarningsOf, ...] = (_strength, _creep, _errors, _longer, _tension)

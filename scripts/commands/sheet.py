@@ -22,8 +22,8 @@ from coilset.model.tools.document.words import Language, Words
 from coilset.model.tools.figures.panels.goodman import goodman as diagram_of
 from coilset.model.tools.figures.png import write_png
 from coilset.model.tools.limits.case_warnings import warm_warnings
+from coilset.model.tools.limits.presetting import presetting_warning
 from coilset.model.tools.limits.spring_warnings import spring_warnings
-from coilset.model.tools.limits.working_warnings import presetting_warning
 from coilset.model.tools.sheet import from_results
 from coilset.model.tools.sheet.case_sheet import case_sheet
 from coilset.model.tools.sheet.rows import Row, sections

@@ -17,7 +17,7 @@ from rich.text import Text
 from coilset.model.compose.analysis import Analysis
 from coilset.model.core.case.phases import drives_at
 from coilset.model.core.contact.base import SEAT_DOFS
-from coilset.model.core.results.order_of_warnings import told
+from coilset.model.core.results.order_of_warnings import messages_in_order
 from coilset.model.core.results.quantities import quantities
 from coilset.model.core.results.records.labels import lives_text, within
 from coilset.model.core.results.records.record import ContactRecord, SeatReactions, Step
@@ -117,7 +117,7 @@ class Lines:
         """Print the results and the checks of the spring; warnings last, the most important one first."""
         self._answer(summary, made)
         self.console.say(f"  results in {out}{os.sep}", whole=True)
-        for message in told(summary):
+        for message in messages_in_order(summary):
             self.warn(message)
 
     def _answer(self, summary: Mapping[str, Any], made: "Sequence[Check]") -> None:

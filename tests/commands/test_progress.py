@@ -7,7 +7,7 @@ import re
 import pytest
 from mpi4py import MPI
 
-from coilset.model.core.results.order_of_warnings import told
+from coilset.model.core.results.order_of_warnings import messages_in_order
 from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.progress import Lines, Steps, duration
 
@@ -158,7 +158,7 @@ def test_a_warning_is_printed_once(said):
     """Those of the case came again after the results, in the same words."""
     lines, folder = said()
     printed = " ".join(" ".join(lines).split())
-    messages = told(json.loads((folder / "summary.json").read_text(encoding="utf-8")))
+    messages = messages_in_order(json.loads((folder / "summary.json").read_text(encoding="utf-8")))
     assert messages
     assert [printed.count(message) for message in messages] == [1] * len(messages)
     assert printed.index("warning:") > printed.index("results in")

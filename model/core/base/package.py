@@ -24,11 +24,10 @@ def package(module: str, purpose: str, place: str = "") -> ModuleType:
     Raises:
         InputError: if this installation does not have it, or not what it is built on.
     """
-    try:
-        return importlib.import_module(module)
-    except ModuleNotFoundError as error:
-        lacked = _lacked(error)
-        raise InputError(f"{purpose} needs the package {lacked}, which this installation lacks", place) from None
+    lacked = missing(module)
+    if lacked is not None:
+        raise InputError(f"{purpose} needs the package {lacked}, which this installation lacks", place)
+    return importlib.import_module(module)
 
 
 def optional(module: str) -> ModuleType | None:
@@ -37,23 +36,18 @@ def optional(module: str) -> ModuleType | None:
 
 
 def missing(module: str) -> str | None:
-    """The package that is lacking for a module of an optional one; None if it can be imported."""
+    """The package that is lacking for a module of an optional one; None if it can be imported.
+
+    Raises:
+        ModuleNotFoundError: what is lacking is none of coilset's own.
+    """
     try:
         importlib.import_module(module)
     except ModuleNotFoundError as error:
-        return _lacked(error)
+        if error.name is None or not error.name.startswith("coilset."):
+            raise
+        return error.name
     return None
-
-
-def _lacked(error: ModuleNotFoundError) -> str:
-    """The package that could not be imported.
-
-    Raises:
-        ModuleNotFoundError: it is none of coilset's own.
-    """
-    if error.name is None or not error.name.startswith("coilset."):
-        raise error
-    return error.name
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Warnings of a run as they are told: each once, the most important one first, without what other numbers say."""
+"""Warnings of a run as they are printed: each once, the most important one first, without what other numbers say."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -27,7 +27,7 @@ CHECKED = ("limit",)
 COARSE = "contact mesh"  # what it changes is in the error by the mesh, where that is estimated
 
 
-def told(summary: Mapping[str, Any]) -> list[str]:
+def messages_in_order(summary: Mapping[str, Any]) -> list[str]:
     """Messages of the warnings of a summary, in their order."""
     kinds = {name: number for number, name in enumerate(FIRST)}
     kinds |= {name: 2 * len(FIRST) + number for number, name in enumerate(LAST)}

@@ -11,8 +11,8 @@ from typing import Any, Literal
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.results import surface
 from coilset.model.core.results.records.record import Result, Setup, Snapshot
+from coilset.model.core.results.records.releases import NOTICED
 
-FLOWS = 1e-5  # of the free length: a further set by less is not noticed
 LINE = {f"line_{plane}_{axis}": "mm" for plane in ("lower", "upper") for axis in "xy"} | {"side_force": "N"}
 """Numbers of the force line, of cases with `force_line`."""
 QUANTITIES = {
@@ -95,7 +95,7 @@ def working_warnings(setup: Setup, result: Result) -> Iterator[Warning]:
     for state in result.working.states:
         if state.reason:
             yield Warning("working length", f"working, {state.label}", f"{state.label}: {state.reason}")
-    more, limit = result.working.set, FLOWS * setup.spring.free_length
+    more, limit = result.working.set, NOTICED * setup.spring.free_length
     if more is not None and abs(more) > limit:
         rises = [(plastic_rise(result, state.snapshot), state) for state in result.working.reached if state.snapshot]
         worst = max(rises, key=lambda one: one[0], default=None)

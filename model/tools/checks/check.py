@@ -12,7 +12,7 @@ ROUNDING = 1e-9  # of a limit: a value beyond it by less is at it
 
 
 class Verdict(StrEnum):
-    """What a check says of a spring."""
+    """The result of a check."""
 
     PERMITTED = "permitted"
     NOT_PERMITTED = "not permitted"
@@ -99,7 +99,7 @@ HEADS = ("check", "verdict", "value", "limit", "reserve")
 
 
 def sentence(made: Sequence[Check]) -> str:
-    """What all checks say together."""
+    """The results of all checks in one or two sentences."""
     failed, left = (
         [one.name for one in made if one.verdict is verdict] for verdict in (Verdict.NOT_PERMITTED, Verdict.NOT_KNOWN)
     )

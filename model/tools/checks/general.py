@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from coilset.model.core.material.law.law import CELSIUS
 from coilset.model.core.results.loading import Loading
 from coilset.model.core.results.records.units import words_and_unit
 from coilset.model.tools.checks.check import Check
@@ -12,8 +13,6 @@ from coilset.model.tools.checks.subject import Subject
 from coilset.model.tools.checks.turned import largest_turn
 from coilset.model.tools.sheet.rows import SHORT
 from coilset.model.tools.standards import en13906, en15800, goodman
-
-ZERO_CELSIUS = 273.15
 
 
 def guides(one: Subject) -> Iterator[Check]:
@@ -82,11 +81,11 @@ def temperature(one: Subject) -> Iterator[Check]:
         if one.is_warm:
             what = "the material of the case" if one.wire is None else one.wire.name
             because = f"up to which temperature {what} is used was found in no source"
-            yield Check(name, most - ZERO_CELSIUS, unit="°C", because=because)
+            yield Check(name, most - CELSIUS, unit="°C", because=because)
         return
-    limit = entry.at(one.coil.d) - ZERO_CELSIUS
+    limit = entry.at(one.coil.d) - CELSIUS
     source = f"use of {one.wire.name}" if one.wire else ""
-    yield Check(name, most - ZERO_CELSIUS, high=limit, unit="°C", source=source, sure=SHORT[entry.sure])
+    yield Check(name, most - CELSIUS, high=limit, unit="°C", source=source, sure=SHORT[entry.sure])
 
 
 def index(one: Subject) -> Check:

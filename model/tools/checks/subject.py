@@ -13,6 +13,7 @@ from coilset.model.core.case import Case
 from coilset.model.core.case.loading import is_turned, pulls
 from coilset.model.core.case.material import case_elastic, case_law, case_strength
 from coilset.model.core.case.phases import TimePhase
+from coilset.model.core.material.law.law import CELSIUS
 from coilset.model.core.material.law.steel import Elastic
 from coilset.model.core.results.loading import Loading, loading_of
 from coilset.model.tools.sheet.sheet import Sheet
@@ -158,7 +159,7 @@ class Subject:
         """Why a limit is not known at this temperature, and what would make it known."""
         name = "the material" if self.wire is None else self.wire.name
         return (
-            f"how the strength of {name} falls to {max(self.temperatures) - 273.15:.0f} °C was found in no "
+            f"how the strength of {name} falls to {max(self.temperatures) - CELSIUS:.0f} °C was found in no "
             "source; below the limit of 20 °C, ask the wire's maker for its relaxation at this stress"
         )
 

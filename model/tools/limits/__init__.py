@@ -1,1 +1,1 @@
-"""Limits of results, and what the standards say of a case and its run."""
+"""Limits of results, and what follows from the standards for a case and its run."""

@@ -1,4 +1,4 @@
-"""What the standards say of a case before it runs."""
+"""What follows from the standards for a case, before it runs."""
 
 import math
 from typing import NamedTuple
@@ -17,7 +17,7 @@ from coilset.model.tools.standards.cylinder import Cylinder
 
 
 class BeforeRun(NamedTuple):
-    """What is known of a spring by the standards.
+    """Of a spring by the standards, before its run.
 
     Attributes:
         warnings: about its case.
@@ -31,7 +31,7 @@ class BeforeRun(NamedTuple):
 
 
 def before_run(case: Case, spring: Spring, law: Law) -> BeforeRun:
-    """What the standards say of a case with its spring and law."""
+    """What follows from the standards for a case with its spring and law."""
     elastic = case_elastic(case, law)
     ratio = elastic.shear_modulus / elastic.young_modulus
     travel = buckling_travel(spring, ratio, seating_of(case)) if is_pressed(case, spring) else math.inf

@@ -7,10 +7,8 @@ from typing import Any
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.results.records.part import Part
 from coilset.model.core.results.records.record import Result, Setup
-from coilset.model.core.results.records.releases import last_release
-from coilset.model.tools.limits.working_warnings import presetting_warning
-
-NOTICED = 1e-5  # of the free length: a spring that sets by less is elastic
+from coilset.model.core.results.records.releases import NOTICED, last_release
+from coilset.model.tools.limits.presetting import presetting_warning
 
 
 def _numbers(setup: Setup, result: Result) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 import yaml
 
 from coilset.model.core.results.files.opened import Run
-from coilset.model.core.results.order_of_warnings import told
+from coilset.model.core.results.order_of_warnings import messages_in_order
 from coilset.model.tools.figures.panels.along_wire import moments_along_wire, stress_along_wire
 from coilset.model.tools.figures.panels.buckling import buckling_axis, buckling_mode
 from coilset.model.tools.figures.panels.characteristic import characteristic, rate_curve
@@ -71,7 +71,7 @@ def write_report(run: Run) -> Path:
         answer=found,
         sheet=maker_sheet(run),
         first=first_sheet(run),
-        warnings=told(run.summary),
+        warnings=messages_in_order(run.summary),
         lists=lists(run.summary),
         case=_text(case),
         files=files,

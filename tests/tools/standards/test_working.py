@@ -7,7 +7,7 @@ from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.core.base.errors import InputError
 from coilset.model.core.base.warning import Warning
 from coilset.model.core.material.law.steel import STEEL, Elastic
-from coilset.model.tools.limits.working_warnings import presetting_warning
+from coilset.model.tools.limits.presetting import presetting_warning
 from coilset.model.tools.sheet.sheet import Sheet
 from coilset.model.tools.standards import en13906
 from coilset.model.tools.standards.cylinder import Cylinder

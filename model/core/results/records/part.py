@@ -8,8 +8,8 @@ from coilset.model.core.base.warning import Warning
 from coilset.model.core.results.files.netcdf import Variable
 from coilset.model.core.results.records.record import Result, Setup, Step
 
-Check = Callable[[Setup, Result], Iterator[Warning]]
-"""Gives the warnings of one kind; they follow from the records alone, so that a resumed run gives the same ones."""
+WarningsOf = Callable[[Setup, Result], Iterator[Warning]]
+"""The warnings of one kind, from the records alone, so that a resumed run has the same ones."""
 
 
 def place_of(step: Step) -> str:
@@ -27,12 +27,12 @@ class Part:
 
     Attributes:
         numbers: entries of the Summary.
-        seen: checks of the steps, made after each of them.
-        found: checks of the whole run.
+        seen: warnings that the steps show, sought after each of them.
+        found: warnings of the whole run.
         variables: of points.nc.
     """
 
     numbers: Callable[[Setup, Result], Mapping[str, Any]] = _none
-    seen: tuple[Check, ...] = ()
-    found: tuple[Check, ...] = ()
+    seen: tuple[WarningsOf, ...] = ()
+    found: tuple[WarningsOf, ...] = ()
     variables: Callable[[Setup, Result], Mapping[str, Variable]] = _none

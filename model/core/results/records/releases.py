@@ -9,6 +9,7 @@ from coilset.model.core.results.records.record import Result, Setup, Snapshot, S
 TURNED = 2.0  # torque over force times coil radius from which a spring is loaded by the torque about its axis
 LEAST_TURN = 1e-6  # degrees: a spring that is turned by less is not turned, but for rounding
 STILL = 1e-9  # of the free length: heads that move by less keep it
+NOTICED = 1e-5  # of the free length: a set of less, 0.3 µm of 30 mm, is none to whoever measures it
 FREE = 1e-6  # of the maximum force so far: a spring under less is free of load
 
 
